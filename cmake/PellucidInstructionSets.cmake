@@ -59,12 +59,13 @@ foreach(_pellucid_set IN LISTS _pellucid_built_sets)
   endif()
 endforeach()
 
-# pellucid_instruction_sets(TARGET SOURCES file... [ABSENT file] [ENTRIES name...]
-#                           [LIBRARIES target...])
+# pellucid_instruction_sets(TARGET SOURCES file... [LATER file...] [INSTEAD file...] [ABSENT file]
+#                           [ENTRIES name...] [LIBRARIES target...])
 #
-# Compiles the sources once per instruction set and adds the objects to TARGET; LIBRARIES say what
-# they include. For a set that PELLUCID_BUILD_SETS leaves out, ABSENT is compiled in their place, or
-# functions named by ENTRIES that return null.
+# Compiles the sources (LATER and INSTEAD: see pellucid_first_sources()) once per instruction set
+# and adds the objects to TARGET; LIBRARIES say what they include. For a set that
+# PELLUCID_BUILD_SETS leaves out, ABSENT is compiled in their place, or functions named by ENTRIES
+# that return null.
 # In these sources
 #   PELLUCID_LANES             is 4, 8 or 16,
 #   PELLUCID_INSTRUCTION_SET   is sse4, avx2 or avx512,
@@ -76,7 +77,13 @@ endforeach()
 # symbols. TARGET's own sources see PELLUCID_HAS_PACKETS, 1 or 0: off x86-64, or without
 # PELLUCID_SIMD, nothing is compiled.
 function(pellucid_instruction_sets target)
-  cmake_parse_arguments(arg "" "ABSENT" "SOURCES;ENTRIES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "" "ABSENT" "SOURCES;LATER;INSTEAD;ENTRIES;LIBRARIES" ${ARGN})
+  set(sources ${arg_SOURCES})
+  if(PELLUCID_FIRST_PICTURE)
+    list(APPEND sources ${arg_INSTEAD})
+  else()
+    list(APPEND sources ${arg_LATER})
+  endif()
   if(NOT PELLUCID_SIMD_FOUND)
     target_compile_definitions(${target} PRIVATE PELLUCID_HAS_PACKETS=0)
     return()
@@ -95,7 +102,7 @@ function(pellucid_instruction_sets target)
       file(CONFIGURE OUTPUT "${absent}" @ONLY CONTENT "${functions}")
       add_library(${objects} OBJECT "${absent}")
     else()
-      add_library(${objects} OBJECT ${arg_SOURCES})
+      add_library(${objects} OBJECT ${sources})
     endif()
     set_target_properties(${objects} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
     target_compile_features(${objects} PRIVATE cxx_std_20)

@@ -71,14 +71,40 @@ function(pellucid_header_module name)
   _pellucid_declare(${name} INTERFACE "${arg_DEPENDS}")
 endfunction()
 
-# pellucid_library(NAME SOURCES file... [DEPENDS NAME...] [PRIVATE target...] [LEVEL option]): the
-# folders src/NAME and include/pellucid/NAME as the compiled library pellucid::NAME. It is static,
-# so whoever links it links its PRIVATE targets too (PellucidInstall); those that are headers alone
+# pellucid_first_sources(RESULT TARGET SOURCES file... [LATER file...] [INSTEAD file...]): the files
+# of a target. LATER: those that no first picture needs; with PELLUCID_FIRST_PICTURE the files
+# INSTEAD stand in for them. Both builds compile SOURCES alike, so that the whole one takes over
+# their objects. tests/first_picture links what is left without LATER, which is kept in global
+# properties:
+#   PELLUCID_FIRST_TARGETS      the targets
+#   PELLUCID_LATER_<target>     as seen from the target's folder
+#   PELLUCID_INSTEAD            absolute paths
+function(pellucid_first_sources result target)
+  cmake_parse_arguments(arg "" "" "SOURCES;LATER;INSTEAD" ${ARGN})
+  if(PELLUCID_FIRST_PICTURE)
+    set(${result} ${arg_SOURCES} ${arg_INSTEAD} PARENT_SCOPE)
+  else()
+    set(${result} ${arg_SOURCES} ${arg_LATER} PARENT_SCOPE)
+  endif()
+  if(arg_LATER)
+    set_property(GLOBAL APPEND PROPERTY PELLUCID_FIRST_TARGETS ${target})
+    set_property(GLOBAL PROPERTY PELLUCID_LATER_${target} ${arg_LATER})
+    list(TRANSFORM arg_INSTEAD PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
+    set_property(GLOBAL APPEND PROPERTY PELLUCID_INSTEAD ${arg_INSTEAD})
+  endif()
+endfunction()
+
+# pellucid_library(NAME SOURCES file... [LATER file...] [INSTEAD file...] [DEPENDS NAME...]
+# [PRIVATE target...] [LEVEL option]): the folders src/NAME and include/pellucid/NAME as the
+# compiled library pellucid::NAME, its files as of pellucid_first_sources(). It is static, so
+# whoever links it links its PRIVATE targets too (PellucidInstall); those that are headers alone
 # stand in $<BUILD_INTERFACE:...>. LEVEL is what GCC optimises it by in a release, where that is not
 # what the others have.
 function(pellucid_library name)
-  cmake_parse_arguments(arg "" "LEVEL" "SOURCES;DEPENDS;PRIVATE" ${ARGN})
-  add_library(pellucid_${name} STATIC ${arg_SOURCES})
+  cmake_parse_arguments(arg "" "LEVEL" "SOURCES;LATER;INSTEAD;DEPENDS;PRIVATE" ${ARGN})
+  pellucid_first_sources(sources pellucid_${name}
+    SOURCES ${arg_SOURCES} LATER ${arg_LATER} INSTEAD ${arg_INSTEAD})
+  add_library(pellucid_${name} STATIC ${sources})
   set_target_properties(pellucid_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
   _pellucid_declare(${name} PUBLIC "${arg_DEPENDS}")
   target_link_libraries(pellucid_${name}

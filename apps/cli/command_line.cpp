@@ -163,6 +163,9 @@ Option* CommandLine::add_flag(const std::string& names, bool& value, const std::
 void CommandLine::footer(const std::string& text) {
   app_->footer(text);
 }
+void CommandLine::take_any_arguments() {
+  app_->allow_extras();
+}
 std::string CommandLine::get_name() const {
   return app_->get_name();
 }

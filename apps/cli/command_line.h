@@ -68,6 +68,9 @@ class CommandLine {
   /// What help ends with.
   void footer(const std::string& text);
 
+  /// Takes any arguments, which nobody reads.
+  void take_any_arguments();
+
   std::string get_name() const;
   bool parsed() const;  ///< whether this is the command that was given
 

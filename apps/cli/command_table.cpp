@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// All commands.
+// All commands. In builds for a first picture left_out.cpp stands in.
 #include "commands.h"
 
 namespace pellucid::cli {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// All formats of volumes.
+// All formats of volumes. In builds for a first picture first_volume_formats.cpp stands in.
 #include <array>
 #include <optional>
 #include <string>

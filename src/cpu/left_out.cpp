@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Stands in for the sources that builds for a first picture leave out (PELLUCID_FIRST_PICTURE).
+// Light, surfaces and several variables take the general path, which is slower.
+#include "pellucid/scene/left_out.h"
+
+#include "device/device_frame.h"
+#include "device/device_layer.h"
+#include "device/kept_devices.h"
+#include "grid/grid_light.h"
+#include "grid/packet_surfaces.h"
+#include "layers/layer_stream.h"
+#include "projection/projected_tracer.h"
+#include "ray_tracer.h"
+#include "sample/packet_sampler.h"
+#include "sample/preintegrated_storage.h"
+
+namespace pellucid {
+
+std::unique_ptr<const RayTracer> make_surface_tracer(const TracerTask&) {
+  return nullptr;
+}
+
+bool has_plain_isosurfaces(const Layer&) {
+  return false;
+}
+
+std::optional<TransferFunction> with_points_at_isosurfaces(const Layer&) {
+  return std::nullopt;
+}
+
+std::unique_ptr<const GridLight> GridLight::make(const Layer&, const std::vector<Light>&,
+                                                 const RayTolerance&) {
+  return nullptr;
+}
+
+void GridLight::integrate(const StructuredWalk<double>::Step&, const Ray<double>&,
+                          const PellucidCell&, const TransferTables&, PellucidCellResult&) const {
+  throw left_out("what integrates lit cells");
+}
+
+std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task) {
+  if (task.integration.method == Method::exact) return nullptr;
+  throw left_out("what samples several variables");
+}
+
+std::unique_ptr<const RayTracer> make_mesh_tracer(const TracerTask&) {
+  throw left_out("what renders meshes");
+}
+
+std::unique_ptr<const LayerSource> make_mesh_source(const LayerTask&) {
+  throw left_out("what renders meshes");
+}
+
+std::unique_ptr<const LayerSource> make_label_source(const LayerTask&) {
+  throw left_out("what renders labels");
+}
+
+std::unique_ptr<const PacketSamplerTracer> PacketSamplerTracer::make(
+    const Volume&, const BlockClasses&, const PiecewiseLinear<float>&, const PreintegratedTable*,
+    double, double, std::optional<InstructionSet>) {
+  throw left_out("what samples rays");
+}
+
+std::vector<RayResult> PacketSamplerTracer::trace(const std::vector<RayPart>&) const {
+  throw left_out("what samples rays");
+}
+
+PreintegratedStorage::PreintegratedStorage(const PiecewiseLinear<double>&, double, double, double,
+                                           const ParallelFor&) {
+  throw left_out("what samples rays");
+}
+
+ProjectedTracer::ProjectedTracer(std::vector<Layer>, std::unique_ptr<const RayTracer>,
+                                 const std::vector<Clip>&, double, const ParallelFor&)
+    : largest_color_(0) {
+  throw left_out("what projects layers");
+}
+
+std::vector<RayResult> ProjectedTracer::trace(const std::vector<RayPart>&, const TraceOptions&,
+                                              std::vector<double>*) const {
+  throw left_out("what projects layers");
+}
+
+DeviceLayer::DeviceLayer(const Layer&, const LayerSetting&, const ParallelFor&) {
+  throw left_out("what renders on devices");
+}
+
+std::string reason_for_cpu(const Frame&, const RenderOptions&) {
+  return "";
+}
+
+void render_on_device(const Frame&, const RenderOptions&, KeptDevice&, Image&, RenderReport&) {
+  throw left_out("what renders on devices");
+}
+
+std::shared_ptr<KeptDevice> KeptDevices::find(Device) {
+  throw left_out("what renders on devices");
+}
+
+void KeptDevices::clear() {}
+
+}  // namespace pellucid
