@@ -1,22 +1,36 @@
 # SPDX-License-Identifier: Apache-2.0
 option(PELLUCID_SIMD
-  "Packets of rays for SSE4.1, AVX2 and AVX-512, chosen at run time (x86-64; needs xsimd)" ON)
+  "Packets of rays for SSE4.1, AVX2 and AVX-512, chosen at run time, or NEON (needs xsimd)" ON)
 
-# The sets, best last, the lanes of a packet in each, and the options of the compiler.
+set(_pellucid_processor other)
+if(CMAKE_SIZEOF_VOID_P EQUAL 8 AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+    set(_pellucid_processor x86)
+  elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
+    set(_pellucid_processor arm)
+  endif()
+endif()
+
+# The sets of the processor, best last (simd/instruction_set.h lists the same), the lanes of a
+# packet in each, and the options of the compiler.
 set(PELLUCID_INSTRUCTION_SETS sse4 avx2 avx512)
-set(PELLUCID_BUILD_SETS "sse4;avx2;avx512" CACHE STRING
+if(_pellucid_processor STREQUAL "arm")
+  set(PELLUCID_INSTRUCTION_SETS neon64)
+endif()
+set(PELLUCID_BUILD_SETS "all" CACHE STRING
     "Instruction sets to build kernels for; native: the best of this machine; native+1: and one")
 set(_pellucid_lanes_sse4 4)
 set(_pellucid_lanes_avx2 8)
 set(_pellucid_lanes_avx512 16)
+set(_pellucid_lanes_neon64 4)
 set(_pellucid_flags_sse4 -msse4.1)
 set(_pellucid_flags_avx2 -mavx2 -mfma)
 set(_pellucid_flags_avx512 -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl -mfma
     -mprefer-vector-width=512)
+set(_pellucid_flags_neon64)  # every AArch64 processor has it
 
 set(PELLUCID_SIMD_FOUND FALSE)
-if(PELLUCID_SIMD AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$"
-   AND CMAKE_SIZEOF_VOID_P EQUAL 8 AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+if(PELLUCID_SIMD AND NOT _pellucid_processor STREQUAL "other")
   # Its package file takes the same major version alone.
   find_package(xsimd QUIET)
   if(NOT xsimd_FOUND OR xsimd_VERSION VERSION_LESS 8.1)
@@ -27,7 +41,10 @@ if(PELLUCID_SIMD AND CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$"
 endif()
 
 set(_pellucid_built_sets ${PELLUCID_BUILD_SETS})
-if(_pellucid_built_sets MATCHES "^native(\\+1)?$" AND PELLUCID_SIMD_FOUND)
+if(_pellucid_built_sets STREQUAL "all"
+   OR (_pellucid_built_sets MATCHES "^native(\\+1)?$" AND NOT _pellucid_processor STREQUAL "x86"))
+  set(_pellucid_built_sets ${PELLUCID_INSTRUCTION_SETS})
+elseif(_pellucid_built_sets MATCHES "^native(\\+1)?$" AND PELLUCID_SIMD_FOUND)
   file(STRINGS /proc/cpuinfo _pellucid_flags REGEX "^flags" LIMIT_COUNT 1)
   set(_pellucid_native sse4)
   if(_pellucid_flags MATCHES " avx2( |$)" AND _pellucid_flags MATCHES " fma( |$)")
@@ -55,7 +72,7 @@ endif()
 foreach(_pellucid_set IN LISTS _pellucid_built_sets)
   if(PELLUCID_SIMD_FOUND AND NOT _pellucid_set IN_LIST PELLUCID_INSTRUCTION_SETS)
     message(FATAL_ERROR "PELLUCID_BUILD_SETS: \"${_pellucid_set}\" is no instruction set; "
-                        "name some of ${PELLUCID_INSTRUCTION_SETS}, or native, or native+1")
+                        "name some of ${PELLUCID_INSTRUCTION_SETS}, or all, native, or native+1")
   endif()
 endforeach()
 
@@ -68,14 +85,14 @@ endforeach()
 # that return null.
 # In these sources
 #   PELLUCID_LANES             is 4, 8 or 16,
-#   PELLUCID_INSTRUCTION_SET   is sse4, avx2 or avx512,
+#   PELLUCID_INSTRUCTION_SET   is sse4, avx2, avx512 or neon64,
 #   pellucid                   is a macro: the project's namespace gets another name in each, so
 #                              that an inline function compiled for AVX-512 is never the one that
 #                              the linker keeps for code that runs elsewhere.
 # What they give to others are functions declared extern "C" outside of that namespace, named by
 # PELLUCID_ENTRY (simd/instruction_set.h), and plain structs; tests/architecture reads the objects'
-# symbols. TARGET's own sources see PELLUCID_HAS_PACKETS, 1 or 0: off x86-64, or without
-# PELLUCID_SIMD, nothing is compiled.
+# symbols. TARGET's own sources see PELLUCID_HAS_PACKETS, 1 or 0: on other processors than x86-64
+# and AArch64, or without PELLUCID_SIMD, nothing is compiled.
 function(pellucid_instruction_sets target)
   cmake_parse_arguments(arg "" "ABSENT" "SOURCES;LATER;INSTEAD;ENTRIES;LIBRARIES" ${ARGN})
   set(sources ${arg_SOURCES})

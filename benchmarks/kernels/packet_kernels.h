@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/simd/instruction_set.h"
+
 /// What the benchmarks see of sources that are compiled once per instruction set: outside of
 /// namespace pellucid, which has another name in each of them.
 
@@ -23,7 +25,5 @@ struct PellucidBenchKernels {
 
 extern "C" {
 PellucidBenchKernels pellucid_bench_kernels_scalar();
-PellucidBenchKernels pellucid_bench_kernels_sse4();
-PellucidBenchKernels pellucid_bench_kernels_avx2();
-PellucidBenchKernels pellucid_bench_kernels_avx512();
+PELLUCID_DECLARE_ENTRIES(PellucidBenchKernels, pellucid_bench_kernels, ());
 }

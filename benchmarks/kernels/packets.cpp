@@ -62,9 +62,9 @@ void add(PellucidBenchKernels kernels) {
   add({libm, static_cast<int>(std::size(libm))});
   add(pellucid_bench_kernels_scalar());
 #if PELLUCID_HAS_PACKETS
-  if (is_supported(InstructionSet::sse4)) add(pellucid_bench_kernels_sse4());
-  if (is_supported(InstructionSet::avx2)) add(pellucid_bench_kernels_avx2());
-  if (is_supported(InstructionSet::avx512)) add(pellucid_bench_kernels_avx512());
+  for (const InstructionSet set : packet_sets) {
+    if (is_supported(set)) add(entry_of(set, PELLUCID_ENTRIES(pellucid_bench_kernels))());
+  }
 #endif
   return true;
 }();

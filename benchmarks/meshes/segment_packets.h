@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/simd/instruction_set.h"
+
 /// What the benchmarks see of sources that are compiled once per instruction set: outside of
 /// namespace pellucid, which has another name in each of them.
 
@@ -18,11 +20,8 @@ struct PellucidBenchSegments {
 
 extern "C" {
 void pellucid_bench_segments_scalar(const PellucidBenchSegments<float>*);
-void pellucid_bench_segments_sse4(const PellucidBenchSegments<float>*);
-void pellucid_bench_segments_avx2(const PellucidBenchSegments<float>*);
-void pellucid_bench_segments_avx512(const PellucidBenchSegments<float>*);
+PELLUCID_DECLARE_ENTRIES(void, pellucid_bench_segments, (const PellucidBenchSegments<float>*));
 void pellucid_bench_segments_double_scalar(const PellucidBenchSegments<double>*);
-void pellucid_bench_segments_double_sse4(const PellucidBenchSegments<double>*);
-void pellucid_bench_segments_double_avx2(const PellucidBenchSegments<double>*);
-void pellucid_bench_segments_double_avx512(const PellucidBenchSegments<double>*);
+PELLUCID_DECLARE_ENTRIES(void, pellucid_bench_segments_double,
+                         (const PellucidBenchSegments<double>*));
 }

@@ -168,17 +168,15 @@ std::vector<SegmentIntegrator> our_segment_integrators() {
       integrator<float>("float", pellucid_bench_segments_scalar),
       integrator<double>("double", pellucid_bench_segments_double_scalar)};
 #if PELLUCID_HAS_PACKETS
-  const auto offer = [&](InstructionSet set, Kernel<float> in_float, Kernel<double> in_double) {
-    if (!is_supported(set)) return;
+  for (const InstructionSet set : packet_sets) {
+    if (!is_supported(set)) continue;
     const std::string lanes =
         std::to_string(lanes_of(set)) + " lanes (" + std::string(name_of(set)) + ")";
-    list.push_back(integrator<float>("float, " + lanes, in_float));
-    list.push_back(integrator<double>("double, " + lanes, in_double));
-  };
-  offer(InstructionSet::sse4, pellucid_bench_segments_sse4, pellucid_bench_segments_double_sse4);
-  offer(InstructionSet::avx2, pellucid_bench_segments_avx2, pellucid_bench_segments_double_avx2);
-  offer(InstructionSet::avx512, pellucid_bench_segments_avx512,
-        pellucid_bench_segments_double_avx512);
+    list.push_back(integrator<float>("float, " + lanes,
+                                     entry_of(set, PELLUCID_ENTRIES(pellucid_bench_segments))));
+    list.push_back(integrator<double>(
+        "double, " + lanes, entry_of(set, PELLUCID_ENTRIES(pellucid_bench_segments_double))));
+  }
 #endif
   return list;
 }

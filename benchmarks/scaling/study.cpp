@@ -92,8 +92,7 @@ Study study_instruction_sets(const StudyOptions& options) {
   }
   std::vector<InstructionSet> sets;
   std::vector<std::string> columns{"scene", "method"}, names;
-  for (const InstructionSet set : {InstructionSet::scalar, InstructionSet::sse4,
-                                   InstructionSet::avx2, InstructionSet::avx512}) {
+  for (const InstructionSet set : instruction_sets) {
     if (!is_supported(set)) continue;
     sets.push_back(set);
     names.emplace_back(name_of(set));

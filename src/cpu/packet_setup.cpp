@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 #include "pellucid/scene/error.h"
@@ -26,17 +27,9 @@ constexpr PellucidValue value_type() {
 
 /// Whether this build has the set's kernels (PELLUCID_BUILD_SETS).
 bool is_built(InstructionSet set) {
-  switch (set) {
-    case InstructionSet::scalar:
-      return true;
-    case InstructionSet::sse4:
-      return PELLUCID_BUILT_SSE4 != 0;
-    case InstructionSet::avx2:
-      return PELLUCID_BUILT_AVX2 != 0;
-    case InstructionSet::avx512:
-      return PELLUCID_BUILT_AVX512 != 0;
-  }
-  return false;
+  constexpr const char* built[] = {PELLUCID_BUILT_SETS};
+  return set == InstructionSet::scalar ||
+         std::ranges::any_of(built, [set](std::string_view name) { return name == name_of(set); });
 }
 
 }  // namespace
@@ -51,11 +44,11 @@ InstructionSet packet_instruction_set(std::optional<InstructionSet> wanted) {
     throw Error(std::string("instruction set: this machine has no ") + name_of(*wanted) +
                 "; leave it out, and the best one is taken");
   }
-  for (const InstructionSet set :
-       {InstructionSet::avx512, InstructionSet::avx2, InstructionSet::sse4}) {
-    if (is_built(set) && is_supported(set)) return set;
+  InstructionSet best = InstructionSet::scalar;
+  for (const InstructionSet set : packet_sets) {
+    if (is_built(set) && is_supported(set)) best = set;
   }
-  return InstructionSet::scalar;
+  return best;
 }
 
 double largest_value(const VolumeStatistics& data) {

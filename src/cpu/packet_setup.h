@@ -18,22 +18,6 @@ namespace pellucid {
 /// that one.
 InstructionSet packet_instruction_set(std::optional<InstructionSet> wanted);
 
-/// Of kernels compiled once per instruction set, that of this one; null: rays go one by one.
-template <class Kernel>
-Kernel kernel_of(InstructionSet set, Kernel sse4, Kernel avx2, Kernel avx512) {
-  switch (set) {
-    case InstructionSet::avx512:
-      return avx512;
-    case InstructionSet::avx2:
-      return avx2;
-    case InstructionSet::sse4:
-      return sse4;
-    case InstructionSet::scalar:
-      break;
-  }
-  return nullptr;
-}
-
 /// The largest magnitude of the data.
 double largest_value(const VolumeStatistics& data);
 inline double largest_value(const Volume& volume) {

@@ -32,7 +32,7 @@ namespace {
   std::string& message = *static_cast<std::string*>(last);
   message = text;
   std::ranges::replace_if(
-      message, [](char c) { return c >= 0 && c < ' '; }, ' ');
+      message, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
   return 1;
 }
 // libtiff warns of bytes of a single strip that cannot be right, and takes as many as the image

@@ -16,7 +16,7 @@ import re
 import subprocess
 import sys
 
-SETS = ("sse4", "avx2", "avx512")
+SETS = ("sse4", "avx2", "avx512", "neon64")
 # Pointers to the personality routine, the same in every object; the sanitizers' own.
 NEUTRAL = re.compile(r"^(DW\.ref\.__gxx_personality_v0|__(asan|ubsan|tsan|odr_asan)[._a-z]*)")
 

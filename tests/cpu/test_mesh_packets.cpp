@@ -24,9 +24,6 @@ namespace {
 using Place = Vec3<double>;
 using MeshPointer = std::shared_ptr<const TetrahedralMesh>;
 
-constexpr InstructionSet sets[] = {InstructionSet::sse4, InstructionSet::avx2,
-                                   InstructionSet::avx512};
-
 /// Cubes whose points are pushed aside, so that no faces are in line.
 MeshPointer bent(int cubes) {
   TetrahedralMesh::Description mesh = lattice_mesh(cubes, 3);
@@ -123,7 +120,7 @@ void expect_same(Scene scene, const std::string& what) {
     float most = 0;
     for (const auto& pixel : scalar.pixels) most = std::max(most, pixel[3]);
     EXPECT_GT(most, 0.2f) << what << " shows nothing";
-    for (const InstructionSet set : sets) {
+    for (const InstructionSet set : packet_sets) {
       if (!PELLUCID_HAS_PACKETS || !test::runs_here(set)) continue;
       const Image image = rendered(scene, set, packets);
       const std::string where = what + ", " + name_of(set) + ", " + std::to_string(tolerance);
@@ -195,8 +192,7 @@ TEST(MeshPackets, TakeAnyNumberOfRays) {
 
 TEST(MeshPackets, AreTheSameToTheBitForAnyNumberOfThreads) {
   const Scene scene = scene_of(at_points(bent(6)), true);
-  for (const InstructionSet set : {InstructionSet::scalar, InstructionSet::sse4,
-                                   InstructionSet::avx2, InstructionSet::avx512}) {
+  for (const InstructionSet set : instruction_sets) {
     if (!test::runs_here(set)) continue;
     RenderReport report;
     const Image one = rendered(scene, set, report, 1);
@@ -224,8 +220,7 @@ TEST(MeshPackets, SayWhereComponentsAreInsideOfOthers) {
   scene.camera.position = Place{3.1, 3.2, -20};
   scene.camera.focal_point = Place{3.1, 3.2, 2.9};
   scene.camera.up = {0, 1, 0};
-  for (const InstructionSet set : {InstructionSet::scalar, InstructionSet::sse4,
-                                   InstructionSet::avx2, InstructionSet::avx512}) {
+  for (const InstructionSet set : instruction_sets) {
     if (!test::runs_here(set)) continue;
     RenderReport report;
     const Image image = rendered(scene, set, report);

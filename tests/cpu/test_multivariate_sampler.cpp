@@ -16,9 +16,6 @@
 namespace pellucid::test_multivariate_sampler {
 namespace {
 
-constexpr InstructionSet packet_sets[] = {InstructionSet::sse4, InstructionSet::avx2,
-                                          InstructionSet::avx512};
-
 /// The three fields of the scenes, in [0,1] over [0,1]³; the first is nothing over much of it.
 double field(int which, double x, double y, double z) {
   if (which == 0) return std::max(0.0, 1 - 2.8 * std::hypot(x - 0.5, y - 0.45, z - 0.55));

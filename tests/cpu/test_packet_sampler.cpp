@@ -16,9 +16,6 @@
 namespace pellucid::test_packet_sampler {
 namespace {
 
-constexpr InstructionSet packet_sets[] = {InstructionSet::sse4, InstructionSet::avx2,
-                                          InstructionSet::avx512};
-
 /// `field` of the place in [0,1]³, times `scale`, in values of type T.
 template <class T, class Field>
 std::shared_ptr<const Volume> sampled(std::array<int, 3> n, Centering centering, double scale,

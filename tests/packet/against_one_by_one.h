@@ -42,7 +42,7 @@ inline void compare(Scene scene, const std::vector<double>& tolerances, Seen& se
   scene.integration.grade = Grade::proved;
   const Image truth = render(scene, options);
   scene.integration.precision = Precision::automatic;
-  for (const InstructionSet set : sets) {
+  for (const InstructionSet set : packet_sets) {
     if (!test::runs_here(set)) continue;
     options.instruction_set = set;
     for (const double tolerance : tolerances) {

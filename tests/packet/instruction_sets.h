@@ -9,13 +9,10 @@
 
 namespace pellucid {
 
-/// Those that packets are compiled for.
-inline constexpr InstructionSet sets[] = {InstructionSet::sse4, InstructionSet::avx2,
-                                          InstructionSet::avx512};
-
 /// How many of them the machine has. Counts of what tests have seen grow with it.
 inline int set_count() {
-  return static_cast<int>(std::count_if(std::begin(sets), std::end(sets), test::runs_here));
+  return static_cast<int>(
+      std::count_if(std::begin(packet_sets), std::end(packet_sets), test::runs_here));
 }
 
 inline bool no_packets() {

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "pellucid/simd/instruction_set.h"
+
 /// What packet_parts.cpp, compiled once per instruction set, gives to the tests: the parts of
 /// packets that keep account of their lanes, in `lanes` lanes.
 namespace packet_parts {
@@ -37,7 +39,5 @@ struct Operations {
 }  // namespace packet_parts
 
 extern "C" {
-const packet_parts::Operations* pellucid_packet_parts_sse4();
-const packet_parts::Operations* pellucid_packet_parts_avx2();
-const packet_parts::Operations* pellucid_packet_parts_avx512();
+PELLUCID_DECLARE_ENTRIES(const packet_parts::Operations*, pellucid_packet_parts, ());
 }

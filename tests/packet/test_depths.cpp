@@ -141,7 +141,7 @@ class Depths : public RandomFrames {
     scene.integration.tolerance = tolerance;
     const ReferenceRays reference(scene);
     const CameraFrame<double> camera = make_camera_frame(scene.camera, scene.size);
-    for (const InstructionSet set : sets) {
+    for (const InstructionSet set : packet_sets) {
       if (!test::runs_here(set)) continue;
       SCOPED_TRACE(testing::Message() << name_of(set) << " at " << tolerance);
       options.instruction_set = set;

@@ -21,9 +21,6 @@ namespace {
 using Points = std::vector<TransferFunction::Point>;
 
 constexpr int width = 12;
-constexpr InstructionSet sets[] = {InstructionSet::sse4, InstructionSet::avx2,
-                                   InstructionSet::avx512};
-
 template <class Value>
 std::shared_ptr<Volume> make_volume(const std::function<double(int, int, int)>& value,
                                     double spacing = 1) {
@@ -67,7 +64,7 @@ void renders(std::shared_ptr<Volume> volume, Points points, int* handed_back = n
   along.up = {0, 1, 0};
   along.projection = Projection::orthographic;
   along.parallel_scale = test::volume_of(scene).volume->voxel_size() * width / 2;
-  for (const InstructionSet set : sets) {
+  for (const InstructionSet set : packet_sets) {
     if (!test::runs_here(set)) continue;
     options.instruction_set = set;
     for (const double tolerance : {1.0, default_tolerance, 2e-5}) {
@@ -89,7 +86,7 @@ void renders(std::shared_ptr<Volume> volume, Points points, int* handed_back = n
 class PacketEnds : public testing::Test {
  protected:
   void SetUp() override {
-    if (std::none_of(std::begin(sets), std::end(sets), test::runs_here)) {
+    if (std::none_of(std::begin(packet_sets), std::end(packet_sets), test::runs_here)) {
       GTEST_SKIP() << "this machine has no instruction set for packets";
     }
   }

@@ -108,7 +108,7 @@ void compare(Scene scene, Seen& seen) {
   scene.integration.precision = Precision::float64;
   const Image truth = render(scene, options);
   scene.integration.precision = Precision::automatic;
-  for (const InstructionSet set : sets) {
+  for (const InstructionSet set : packet_sets) {
     if (!test::runs_here(set)) continue;
     options.instruction_set = set;
     for (const double tolerance : {1e-2, default_tolerance, 1e-4}) {

@@ -215,7 +215,7 @@ TEST_P(GaussianFrames, DoNotPassANarrowOneUnseen) {
   options.error = true;
   int places = 0;
   double worst = 0;
-  for (const InstructionSet set : sets) {
+  for (const InstructionSet set : packet_sets) {
     if (!test::runs_here(set)) continue;
     options.instruction_set = set;
     for (double center = 0.1; center < 0.9; center += 0.0137) {

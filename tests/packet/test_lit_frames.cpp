@@ -74,7 +74,7 @@ TEST(LitFrames, AreWithinWhatTheySayOfTheGeneralPath) {
     Scene scene = random_scene(random, n % 4);
     scene.integration.tolerance = 1e-6;
     const Image truth = frame(scene, InstructionSet::scalar);
-    for (const InstructionSet set : sets) {
+    for (const InstructionSet set : packet_sets) {
       if (!test::runs_here(set)) continue;
       for (const double tolerance : {2e-2, 2e-3, 1e-4}) {
         scene.integration.tolerance = tolerance;
@@ -128,7 +128,7 @@ TEST(LitFrames, KnowWhetherDataReachAnIsosurface) {
     scene.integration.tolerance = 1e-6;
     const Image truth = frame(scene, InstructionSet::scalar);
     scene.integration.tolerance = 1e-3;
-    for (const InstructionSet set : sets) {
+    for (const InstructionSet set : packet_sets) {
       if (!test::runs_here(set)) continue;
       const Image image = frame(scene, set);
       for (std::size_t i = 0; i < image.pixels.size(); ++i) {

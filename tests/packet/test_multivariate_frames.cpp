@@ -104,8 +104,7 @@ TEST_P(MultivariateFrames, AreTheSameInEveryInstructionSet) {
       options.error = true;
       options.instruction_set = InstructionSet::scalar;
       const Image alone = render(scene, options);
-      for (const InstructionSet set :
-           {InstructionSet::sse4, InstructionSet::avx2, InstructionSet::avx512}) {
+      for (const InstructionSet set : packet_sets) {
         if (!test::runs_here(set)) continue;
         options.instruction_set = set;
         RenderReport report;
@@ -151,8 +150,7 @@ TEST(MultivariateFrame, ColorOfATableIsChargedWithTheRoundingOfTheData) {
   RenderOptions options;
   options.error = true;
   const Image reference = render_reference(scene);
-  for (const InstructionSet set : {InstructionSet::scalar, InstructionSet::sse4,
-                                   InstructionSet::avx2, InstructionSet::avx512}) {
+  for (const InstructionSet set : instruction_sets) {
     if (!test::runs_here(set)) continue;
     options.instruction_set = set;
     const Image image = render(scene, options);

@@ -18,8 +18,7 @@ namespace {
 class PacketParts : public EveryInstructionSet {
  protected:
   static const packet_parts::Operations& operations() {
-    return *choose(pellucid_packet_parts_sse4, pellucid_packet_parts_avx2,
-                   pellucid_packet_parts_avx512)();
+    return *choose(PELLUCID_ENTRIES(pellucid_packet_parts))();
   }
   double uniform(double a, double b) {
     return std::uniform_real_distribution<double>(a, b)(random_);

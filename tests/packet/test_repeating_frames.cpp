@@ -30,7 +30,7 @@ void compare(Scene scene, std::initializer_list<double> tolerances, Compared& co
   RenderOptions options;
   options.error = true;
   options.threads = 1;
-  for (const InstructionSet set : sets) {
+  for (const InstructionSet set : packet_sets) {
     if (!test::runs_here(set)) continue;
     options.instruction_set = set;
     for (const double tolerance : tolerances) {
@@ -130,7 +130,7 @@ TEST(FieldGradients, AlongFacesAreWithinWhatTheySay) {
         RenderOptions options;
         options.error = true;
         options.threads = 1;
-        for (const InstructionSet set : {InstructionSet::scalar, sets[0], sets[1], sets[2]}) {
+        for (const InstructionSet set : instruction_sets) {
           if (!test::runs_here(set)) continue;
           options.instruction_set = set;
           const Image image = render(scene, options);

@@ -105,7 +105,7 @@ TEST_P(PacketSkips, LoseNothing) {
     precise.integration.tolerance = 1e-6;
     precise.integration.precision = Precision::float64;
     const Image expected = render(precise, options);
-    for (const InstructionSet set : sets) {
+    for (const InstructionSet set : packet_sets) {
       if (!test::runs_here(set)) continue;
       options.instruction_set = set;
       const Image found = render(scene, options);
@@ -134,7 +134,7 @@ TEST(PacketSkip, KeepsRaysInTheFaces) {
     // 30 cells by unit, a triangle of width 0.2.
     const double opacity = 1 - std::exp(-30 * 0.5 * 0.1);
     RenderOptions options;
-    for (const InstructionSet set : sets) {
+    for (const InstructionSet set : packet_sets) {
       if (!test::runs_here(set)) continue;
       options.instruction_set = set;
       for (const auto& pixel : render(scene, options).pixels) {
@@ -183,7 +183,7 @@ TEST(PacketSkipsCost, SmoothDataAreCrossedInFewSteps) {
     RenderReport one_by_one, packets;
     options.instruction_set = InstructionSet::scalar;
     render(scene, options, &one_by_one);
-    for (const InstructionSet set : sets) {
+    for (const InstructionSet set : packet_sets) {
       if (!test::runs_here(set)) continue;
       options.instruction_set = set;
       render(scene, options, &packets);

@@ -47,7 +47,7 @@ TEST(SurfaceFrames, AreWithinWhatTheySayOfTheReference) {
     RenderOptions with_depth;
     with_depth.depth = true;
     const Image truth = render_reference(scene, with_depth);
-    for (const InstructionSet set : sets) {
+    for (const InstructionSet set : packet_sets) {
       if (!test::runs_here(set)) continue;
       for (const double tolerance : {2e-2, 2e-3, 1e-4}) {
         scene.integration.tolerance = tolerance;

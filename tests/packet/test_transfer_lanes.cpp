@@ -24,8 +24,7 @@ using Points = std::vector<TransferFunction::Point>;
 class TransferLanes : public EveryInstructionSet {
  protected:
   static const transfer_lanes::Operations& operations() {
-    return *choose(pellucid_transfer_lanes_sse4, pellucid_transfer_lanes_avx2,
-                   pellucid_transfer_lanes_avx512)();
+    return *choose(PELLUCID_ENTRIES(pellucid_transfer_lanes))();
   }
 
   double uniform(double a, double b) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/simd/instruction_set.h"
+
 /// What transfer_lanes.cpp, compiled once per instruction set, gives to the tests: a BinnedTransfer
 /// looked up in `lanes` lanes, and what is charged for its jumps.
 namespace transfer_lanes {
@@ -25,7 +27,5 @@ struct Operations {
 }  // namespace transfer_lanes
 
 extern "C" {
-const transfer_lanes::Operations* pellucid_transfer_lanes_sse4();
-const transfer_lanes::Operations* pellucid_transfer_lanes_avx2();
-const transfer_lanes::Operations* pellucid_transfer_lanes_avx512();
+PELLUCID_DECLARE_ENTRIES(const transfer_lanes::Operations*, pellucid_transfer_lanes, ());
 }

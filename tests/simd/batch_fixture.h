@@ -9,8 +9,7 @@ namespace pellucid::test {
 class BatchTest : public EveryInstructionSet {
  protected:
   static const batch_operations::Table& table() {
-    return *choose(pellucid_batch_operations_sse4, pellucid_batch_operations_avx2,
-                   pellucid_batch_operations_avx512)();
+    return *choose(PELLUCID_ENTRIES(pellucid_batch_operations))();
   }
   static int lanes() { return table().lanes; }
 };

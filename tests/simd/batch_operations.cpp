@@ -300,6 +300,8 @@ constexpr batch_operations::Table table = {
     spread<double>,
     spread<std::int32_t>,
     as_floats,
+    fuses<Float>,
+    FlushToZero::flushes,
     flushed,
 };
 

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "pellucid/simd/instruction_set.h"
+
 /// What batch_operations.cpp, compiled once per instruction set, gives to the test, which is
 /// compiled for none: plain functions on `lanes` numbers each.
 namespace batch_operations {
@@ -89,6 +91,8 @@ struct Table {
   void (*load_spread_doubles)(unsigned lanes, const double* from, double* in_out);
   void (*load_spread_ints)(unsigned lanes, const std::int32_t* from, std::int32_t* in_out);
   void (*float_of_bits)(const std::int32_t* in, float* out);
+  /// Whether multiply_add() is fused, and whether FlushToZero does anything.
+  bool fuses, flushes;
   /// a · b while there is a FlushToZero, and when it is gone.
   void (*flushed)(const float* a, const float* b, float* out, float* out_behind);
 };
@@ -96,7 +100,5 @@ struct Table {
 }  // namespace batch_operations
 
 extern "C" {
-const batch_operations::Table* pellucid_batch_operations_sse4();
-const batch_operations::Table* pellucid_batch_operations_avx2();
-const batch_operations::Table* pellucid_batch_operations_avx512();
+PELLUCID_DECLARE_ENTRIES(const batch_operations::Table*, pellucid_batch_operations, ());
 }

@@ -44,9 +44,7 @@ class Determinants : public EveryInstructionSet {
 PELLUCID_EVERY_INSTRUCTION_SET(Determinants);
 
 TEST_P(Determinants, HaveTheExactSignInEveryLane) {
-  const simd_determinants::Table& table =
-      *choose(pellucid_simd_determinants_sse4, pellucid_simd_determinants_avx2,
-              pellucid_simd_determinants_avx512)();
+  const simd_determinants::Table& table = *choose(PELLUCID_ENTRIES(pellucid_simd_determinants))();
   const auto lanes = static_cast<std::size_t>(table.lanes);
   expect_exact<double>(table.twice, lanes);
   expect_exact<float>(table.single, lanes);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/simd/instruction_set.h"
+
 /// What determinants.cpp, compiled once per instruction set, gives to the test, which is compiled
 /// for none: a_x, a_y, b_x, b_y of `lanes` pairs.
 namespace simd_determinants {
@@ -14,7 +16,5 @@ struct Table {
 }  // namespace simd_determinants
 
 extern "C" {
-const simd_determinants::Table* pellucid_simd_determinants_sse4();
-const simd_determinants::Table* pellucid_simd_determinants_avx2();
-const simd_determinants::Table* pellucid_simd_determinants_avx512();
+PELLUCID_DECLARE_ENTRIES(const simd_determinants::Table*, pellucid_simd_determinants, ());
 }

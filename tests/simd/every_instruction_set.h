@@ -29,12 +29,10 @@ class EveryInstructionSet : public testing::TestWithParam<InstructionSet> {
       GTEST_SKIP() << "this processor has no " << name_of(set) << ": not tested here";
     }
   }
-  /// Of three entries, the one of this set.
-  template <class Entry>
-  static Entry* choose(Entry* sse4, Entry* avx2, Entry* avx512) {
-    return GetParam() == InstructionSet::avx512 ? avx512
-           : GetParam() == InstructionSet::avx2 ? avx2
-                                                : sse4;
+  /// Of the entries of all sets, that of this one.
+  template <class... Entry>
+  static auto choose(Entry*... entry) {
+    return entry_of(GetParam(), entry...);
   }
 };
 
@@ -42,10 +40,7 @@ inline std::string name_of_parameter(const testing::TestParamInfo<InstructionSet
   return name_of(info.param);
 }
 
-#define PELLUCID_EVERY_INSTRUCTION_SET(suite)                                              \
-  INSTANTIATE_TEST_SUITE_P(                                                                \
-      , suite,                                                                             \
-      testing::Values(InstructionSet::sse4, InstructionSet::avx2, InstructionSet::avx512), \
-      name_of_parameter)
+#define PELLUCID_EVERY_INSTRUCTION_SET(suite) \
+  INSTANTIATE_TEST_SUITE_P(, suite, testing::ValuesIn(packet_sets), name_of_parameter)
 
 }  // namespace pellucid::test

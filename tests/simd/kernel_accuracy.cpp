@@ -23,8 +23,7 @@ namespace {
 class Kernels : public EveryInstructionSet {
  protected:
   static const simd_kernels::Kernels& kernels() {
-    return *choose(pellucid_simd_kernels_sse4, pellucid_simd_kernels_avx2,
-                   pellucid_simd_kernels_avx512)();
+    return *choose(PELLUCID_ENTRIES(pellucid_simd_kernels))();
   }
   static std::size_t lanes() { return static_cast<std::size_t>(kernels().lanes); }
   template <class T>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/simd/instruction_set.h"
+
 /// What kernels.cpp, compiled once per instruction set, gives to the tests, which are compiled for
 /// none: the core's kernels on `lanes` numbers each. Arrays of batches are given as out[k][lane].
 namespace simd_kernels {
@@ -47,7 +49,5 @@ struct Kernels {
 }  // namespace simd_kernels
 
 extern "C" {
-const simd_kernels::Kernels* pellucid_simd_kernels_sse4();
-const simd_kernels::Kernels* pellucid_simd_kernels_avx2();
-const simd_kernels::Kernels* pellucid_simd_kernels_avx512();
+PELLUCID_DECLARE_ENTRIES(const simd_kernels::Kernels*, pellucid_simd_kernels, ());
 }

@@ -13,8 +13,7 @@ namespace {
 class PanelLanes : public EveryInstructionSet {
  protected:
   static const simd_panels::Panels& panels() {
-    return *choose(pellucid_simd_panels_sse4, pellucid_simd_panels_avx2,
-                   pellucid_simd_panels_avx512)();
+    return *choose(PELLUCID_ENTRIES(pellucid_simd_panels))();
   }
 };
 

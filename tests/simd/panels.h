@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/simd/instruction_set.h"
+
 /// What panels.cpp, compiled once per instruction set, gives to the tests: panels of Gaussians and
 /// a table along cubics, `lanes` of them.
 namespace simd_panels {
@@ -26,7 +28,5 @@ struct Panels {
 }  // namespace simd_panels
 
 extern "C" {
-const simd_panels::Panels* pellucid_simd_panels_sse4();
-const simd_panels::Panels* pellucid_simd_panels_avx2();
-const simd_panels::Panels* pellucid_simd_panels_avx512();
+PELLUCID_DECLARE_ENTRIES(const simd_panels::Panels*, pellucid_simd_panels, ());
 }

@@ -17,8 +17,8 @@ namespace pellucid::test {
 /// numbers of a list and `|` separates groups of lists. Columns are addressed by name.
 ///
 /// Inputs are binary32 numbers written in full: `number` gives them exactly. Outputs have 25
-/// digits: take them with `wide` (64 significant bits on x86-64), so that the rounding of the truth
-/// to double is not charged to the code under test.
+/// digits: take them with `wide` (64 significant bits on x86-64, 113 on ARM64), so that the
+/// rounding of the truth to double is not charged to the code under test.
 class Table {
  public:
   /// Throws std::runtime_error naming the file (and line) that cannot be read.

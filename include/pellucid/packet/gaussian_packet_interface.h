@@ -21,12 +21,10 @@ struct PellucidGaussianPacketJob {
   std::int32_t proved;  ///< whether only what is proved counts; of cells
 };
 
-void pellucid_integrate_gaussian_packets_sse4(const PellucidGaussianPacketJob* job);
-void pellucid_integrate_gaussian_packets_avx2(const PellucidGaussianPacketJob* job);
-void pellucid_integrate_gaussian_packets_avx512(const PellucidGaussianPacketJob* job);
+PELLUCID_DECLARE_ENTRIES(void, pellucid_integrate_gaussian_packets,
+                         (const PellucidGaussianPacketJob* job));
 
 /// Cell by cell: without `variation`, and `mixture` is a NearMixture.
-void pellucid_integrate_multivariate_cells_sse4(const PellucidGaussianPacketJob* job);
-void pellucid_integrate_multivariate_cells_avx2(const PellucidGaussianPacketJob* job);
-void pellucid_integrate_multivariate_cells_avx512(const PellucidGaussianPacketJob* job);
+PELLUCID_DECLARE_ENTRIES(void, pellucid_integrate_multivariate_cells,
+                         (const PellucidGaussianPacketJob* job));
 }

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "pellucid/simd/instruction_set.h"
+
 /// What goes between the renderer and the packets of rays, which are compiled once for each
 /// instruction set, each time with namespace pellucid under another name: plain numbers and
 /// pointers, outside of it, that mean the same on both sides.
@@ -91,17 +93,11 @@ struct PellucidPacketJob {
   const void* surfaces;  ///< PacketSurfaces; null: none
 };
 
-void pellucid_integrate_packets_sse4(const PellucidPacketJob* job);
-void pellucid_integrate_packets_avx2(const PellucidPacketJob* job);
-void pellucid_integrate_packets_avx512(const PellucidPacketJob* job);
+PELLUCID_DECLARE_ENTRIES(void, pellucid_integrate_packets, (const PellucidPacketJob* job));
 
 /// With light, gradient opacity or isosurfaces, data of types that binary32 holds, estimates.
-void pellucid_integrate_lit_packets_sse4(const PellucidPacketJob* job);
-void pellucid_integrate_lit_packets_avx2(const PellucidPacketJob* job);
-void pellucid_integrate_lit_packets_avx512(const PellucidPacketJob* job);
+PELLUCID_DECLARE_ENTRIES(void, pellucid_integrate_lit_packets, (const PellucidPacketJob* job));
 
 /// Isosurfaces and nothing else, of such data without vacuum.
-void pellucid_meet_surfaces_sse4(const PellucidPacketJob* job);
-void pellucid_meet_surfaces_avx2(const PellucidPacketJob* job);
-void pellucid_meet_surfaces_avx512(const PellucidPacketJob* job);
+PELLUCID_DECLARE_ENTRIES(void, pellucid_meet_surfaces, (const PellucidPacketJob* job));
 }

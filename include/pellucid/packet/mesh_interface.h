@@ -44,12 +44,8 @@ struct PellucidMeshJob {
   const void* context;
 };
 
-void pellucid_integrate_mesh_sse4(const PellucidMeshJob* job);
-void pellucid_integrate_mesh_avx2(const PellucidMeshJob* job);
-void pellucid_integrate_mesh_avx512(const PellucidMeshJob* job);
+PELLUCID_DECLARE_ENTRIES(void, pellucid_integrate_mesh, (const PellucidMeshJob* job));
 
 /// Rays through several variables, in double.
-void pellucid_integrate_multivariate_mesh_sse4(const PellucidMeshJob* job);
-void pellucid_integrate_multivariate_mesh_avx2(const PellucidMeshJob* job);
-void pellucid_integrate_multivariate_mesh_avx512(const PellucidMeshJob* job);
+PELLUCID_DECLARE_ENTRIES(void, pellucid_integrate_multivariate_mesh, (const PellucidMeshJob* job));
 }

@@ -15,7 +15,6 @@ struct PellucidMultivariateSamplerJob {
   double stop;                      ///< the transparency at which a ray ends
 };
 
-void pellucid_sample_multivariate_sse4(const PellucidMultivariateSamplerJob* job);
-void pellucid_sample_multivariate_avx2(const PellucidMultivariateSamplerJob* job);
-void pellucid_sample_multivariate_avx512(const PellucidMultivariateSamplerJob* job);
+PELLUCID_DECLARE_ENTRIES(void, pellucid_sample_multivariate,
+                         (const PellucidMultivariateSamplerJob* job));
 }

@@ -17,7 +17,5 @@ struct PellucidSamplerJob {
   double stop;                ///< the transparency at which a ray ends
 };
 
-void pellucid_sample_packets_sse4(const PellucidSamplerJob* job);
-void pellucid_sample_packets_avx2(const PellucidSamplerJob* job);
-void pellucid_sample_packets_avx512(const PellucidSamplerJob* job);
+PELLUCID_DECLARE_ENTRIES(void, pellucid_sample_packets, (const PellucidSamplerJob* job));
 }

@@ -73,7 +73,9 @@ class Batch {
   }
   PELLUCID_ALWAYS_INLINE friend Batch operator/(Batch a, Batch b) noexcept requires is_floating {
     return zip(
-        a, b, [](Register x, Register y) __attribute__((always_inline)) { return x / y; });
+        a, b, [](Register x, Register y) __attribute__((always_inline)) {
+          return Register(Native::quotient(x, y));
+        });
   }
   PELLUCID_ALWAYS_INLINE friend Batch operator-(Batch a) noexcept {
     if constexpr (is_floating) {
@@ -100,10 +102,10 @@ class Batch {
   }
   /// By the same number of bits, 0 ... 31, in every lane; to the right with the sign.
   PELLUCID_ALWAYS_INLINE friend Batch operator<<(Batch a, int n) noexcept requires(!is_floating) {
-    return Batch(a.part[0] << n);
+    return Batch(Register(Native::shift_left(a.part[0], n)));
   }
   PELLUCID_ALWAYS_INLINE friend Batch operator>>(Batch a, int n) noexcept requires(!is_floating) {
-    return Batch(a.part[0] >> n);
+    return Batch(Register(Native::shift_right(a.part[0], n)));
   }
 
   PELLUCID_ALWAYS_INLINE friend BatchMask<N> operator<(Batch a, Batch b) noexcept {
@@ -142,13 +144,15 @@ class Batch {
 
   PELLUCID_ALWAYS_INLINE friend Batch min(Batch a, Batch b) noexcept {
     return zip(
-        a, b,
-        [](Register x, Register y) __attribute__((always_inline)) { return xsimd::min(x, y); });
+        a, b, [](Register x, Register y) __attribute__((always_inline)) {
+          return Register(Native::lesser(x, y));
+        });
   }
   PELLUCID_ALWAYS_INLINE friend Batch max(Batch a, Batch b) noexcept {
     return zip(
-        a, b,
-        [](Register x, Register y) __attribute__((always_inline)) { return xsimd::max(x, y); });
+        a, b, [](Register x, Register y) __attribute__((always_inline)) {
+          return Register(Native::greater(x, y));
+        });
   }
   PELLUCID_ALWAYS_INLINE friend Batch clamp(Batch x, Batch lo, Batch hi) noexcept {
     return min(max(x, lo), hi);
@@ -170,7 +174,7 @@ class Batch {
   }
   PELLUCID_ALWAYS_INLINE friend Batch sqrt(Batch a) noexcept requires is_floating {
     return map(
-        a, [](Register x) __attribute__((always_inline)) { return xsimd::sqrt(x); });
+        a, [](Register x) __attribute__((always_inline)) { return Register(Native::root(x)); });
   }
   PELLUCID_ALWAYS_INLINE friend Batch floor(Batch a) noexcept requires is_floating {
     return map(

@@ -10,8 +10,22 @@ namespace pellucid {
 /// FTZ of MXCSR). Powers of small depths and transparencies get there in binary32, where each such
 /// operation takes a processor a hundred times as long; and of what is gathered along a ray 1e-38
 /// is nothing. Numbers that are given as denormal are taken as they are.
+///
+/// On AArch64 it does nothing: the flag there would also take denormal numbers that are given for
+/// 0.
+#if PELLUCID_HAS_NEON64
+class [[maybe_unused]] FlushToZero {
+ public:
+  static constexpr bool flushes = false;
+  FlushToZero() noexcept {}
+  ~FlushToZero() {}
+  FlushToZero(const FlushToZero&) = delete;
+  FlushToZero& operator=(const FlushToZero&) = delete;
+};
+#else
 class FlushToZero {
  public:
+  static constexpr bool flushes = true;
   FlushToZero() noexcept : before_(__builtin_ia32_stmxcsr()) {
     __builtin_ia32_ldmxcsr(before_ | 0x8000u);
   }
@@ -22,6 +36,7 @@ class FlushToZero {
  private:
   unsigned before_;
 };
+#endif
 
 }  // namespace pellucid
 #endif

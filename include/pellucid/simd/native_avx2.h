@@ -8,7 +8,7 @@ namespace pellucid::detail {
 
 /// Members as in Native<4>.
 template <>
-struct Native<8> {
+struct Native<8> : LibraryOperations {
   using Arch = xsimd::fma3<xsimd::avx2>;
   using Float = __m256;
   using Int = __m256i;

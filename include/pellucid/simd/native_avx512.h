@@ -8,7 +8,7 @@ namespace pellucid::detail {
 
 /// Members as in Native<4>; a mask is one bit per lane.
 template <>
-struct Native<16> {
+struct Native<16> : LibraryOperations {
   using Arch = xsimd::avx512bw;
   using Float = __m512;
   using Int = __m512i;

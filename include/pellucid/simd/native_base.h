@@ -5,12 +5,19 @@
 #include <cstdint>
 #include <type_traits>
 
-/// Which widths there are in this translation unit.
+/// Which widths there are in this translation unit. Every source for AArch64 may use NEON; those
+/// have batches that are compiled for it as an instruction set, as on x86-64.
 #if defined(__SSE4_1__)
-#define PELLUCID_HAS_BATCH_4 1
+#define PELLUCID_HAS_SSE4 1
 #else
-#define PELLUCID_HAS_BATCH_4 0
+#define PELLUCID_HAS_SSE4 0
 #endif
+#if defined(__aarch64__) && defined(__ARM_NEON) && defined(PELLUCID_INSTRUCTION_SET)
+#define PELLUCID_HAS_NEON64 1
+#else
+#define PELLUCID_HAS_NEON64 0
+#endif
+#define PELLUCID_HAS_BATCH_4 (PELLUCID_HAS_SSE4 || PELLUCID_HAS_NEON64)
 #if defined(__AVX2__) && defined(__FMA__)
 #define PELLUCID_HAS_BATCH_8 1
 #else
@@ -24,7 +31,11 @@
 #endif
 
 #if PELLUCID_HAS_BATCH_4
+#if PELLUCID_HAS_NEON64
+#include <arm_neon.h>
+#else
 #include <immintrin.h>
+#endif
 #if __has_include(<xsimd/xsimd.hpp>)
 #include <xsimd/xsimd.hpp>
 #else
@@ -40,5 +51,36 @@ namespace pellucid::detail {
 /// Per width: see native_sse4.h, which says what each of its members is.
 template <int N>
 struct Native;
+
+#if PELLUCID_HAS_SSE4
+/// What the SIMD library has right on x86-64. A NaN among the arguments of lesser() and greater()
+/// gives y.
+struct LibraryOperations {
+  template <class Register>
+  PELLUCID_ALWAYS_INLINE static Register lesser(Register x, Register y) noexcept {
+    return xsimd::min(x, y);
+  }
+  template <class Register>
+  PELLUCID_ALWAYS_INLINE static Register greater(Register x, Register y) noexcept {
+    return xsimd::max(x, y);
+  }
+  template <class Register>
+  PELLUCID_ALWAYS_INLINE static Register quotient(Register x, Register y) noexcept {
+    return x / y;
+  }
+  template <class Register>
+  PELLUCID_ALWAYS_INLINE static Register root(Register x) noexcept {
+    return xsimd::sqrt(x);
+  }
+  template <class Register>
+  PELLUCID_ALWAYS_INLINE static Register shift_left(Register x, int n) noexcept {
+    return x << n;
+  }
+  template <class Register>
+  PELLUCID_ALWAYS_INLINE static Register shift_right(Register x, int n) noexcept {
+    return x >> n;
+  }
+};
+#endif
 
 }  // namespace pellucid::detail

@@ -3,7 +3,7 @@
 
 #include "pellucid/simd/native_base.h"
 
-#if PELLUCID_HAS_BATCH_4
+#if PELLUCID_HAS_SSE4
 namespace pellucid::detail {
 
 /// Blocks of four lanes, of which the wider machines' registers are put together. Each reads
@@ -59,7 +59,7 @@ PELLUCID_ALWAYS_INLINE __m128i short_words(const Value* const* base, Offset offs
 }
 
 template <>
-struct Native<4> {
+struct Native<4> : LibraryOperations {
   using Arch = xsimd::sse4_1;
   using Float = __m128;
   using Int = __m128i;

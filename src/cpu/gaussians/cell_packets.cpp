@@ -21,9 +21,7 @@ constexpr double least_tolerance = 1e-11;
 
 GaussianPacketKernel kernel_for([[maybe_unused]] InstructionSet set) {
 #if PELLUCID_HAS_PACKETS
-  return kernel_of<GaussianPacketKernel>(set, pellucid_integrate_multivariate_cells_sse4,
-                                         pellucid_integrate_multivariate_cells_avx2,
-                                         pellucid_integrate_multivariate_cells_avx512);
+  return entry_of(set, PELLUCID_ENTRIES(pellucid_integrate_multivariate_cells));
 #else
   return nullptr;
 #endif

@@ -34,9 +34,7 @@ bool fits_binary32(const Volume& volume) {
 
 GaussianPacketKernel kernel_for([[maybe_unused]] InstructionSet set) {
 #if PELLUCID_HAS_PACKETS
-  return kernel_of<GaussianPacketKernel>(set, pellucid_integrate_gaussian_packets_sse4,
-                                         pellucid_integrate_gaussian_packets_avx2,
-                                         pellucid_integrate_gaussian_packets_avx512);
+  return entry_of(set, PELLUCID_ENTRIES(pellucid_integrate_gaussian_packets));
 #else
   return nullptr;
 #endif

@@ -19,12 +19,9 @@ using Kernel = void (*)(const PellucidPacketJob*);
 Kernel integrator_of([[maybe_unused]] InstructionSet set, [[maybe_unused]] bool lit) {
 #if PELLUCID_HAS_PACKETS
   if (lit) {
-    return kernel_of<Kernel>(set, pellucid_integrate_lit_packets_sse4,
-                             pellucid_integrate_lit_packets_avx2,
-                             pellucid_integrate_lit_packets_avx512);
+    return entry_of(set, PELLUCID_ENTRIES(pellucid_integrate_lit_packets));
   }
-  return kernel_of<Kernel>(set, pellucid_integrate_packets_sse4, pellucid_integrate_packets_avx2,
-                           pellucid_integrate_packets_avx512);
+  return entry_of(set, PELLUCID_ENTRIES(pellucid_integrate_packets));
 #else
   return nullptr;
 #endif

@@ -22,9 +22,8 @@ using Kernel = void (*)(const PellucidPacketJob*);
 
 Kernel kernel_for([[maybe_unused]] const TracerTask& task) {
 #if PELLUCID_HAS_PACKETS
-  return kernel_of<Kernel>(packet_instruction_set(task.options.instruction_set),
-                           pellucid_meet_surfaces_sse4, pellucid_meet_surfaces_avx2,
-                           pellucid_meet_surfaces_avx512);
+  return entry_of(packet_instruction_set(task.options.instruction_set),
+                  PELLUCID_ENTRIES(pellucid_meet_surfaces));
 #else
   return nullptr;
 #endif

@@ -34,12 +34,9 @@ using Kernel = void (*)(const PellucidMeshJob*);
 Kernel kernel_for([[maybe_unused]] InstructionSet set, [[maybe_unused]] bool several) {
 #if PELLUCID_HAS_PACKETS
   if (several) {
-    return kernel_of(set, pellucid_integrate_multivariate_mesh_sse4,
-                     pellucid_integrate_multivariate_mesh_avx2,
-                     pellucid_integrate_multivariate_mesh_avx512);
+    return entry_of(set, PELLUCID_ENTRIES(pellucid_integrate_multivariate_mesh));
   }
-  return kernel_of(set, pellucid_integrate_mesh_sse4, pellucid_integrate_mesh_avx2,
-                   pellucid_integrate_mesh_avx512);
+  return entry_of(set, PELLUCID_ENTRIES(pellucid_integrate_mesh));
 #else
   return nullptr;
 #endif

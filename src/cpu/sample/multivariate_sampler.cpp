@@ -18,8 +18,7 @@ constexpr double left_out_opacity = 1e-7;
 
 Kernel kernel_for([[maybe_unused]] InstructionSet set) {
 #if PELLUCID_HAS_PACKETS
-  return kernel_of<Kernel>(set, pellucid_sample_multivariate_sse4,
-                           pellucid_sample_multivariate_avx2, pellucid_sample_multivariate_avx512);
+  return entry_of(set, PELLUCID_ENTRIES(pellucid_sample_multivariate));
 #else
   return nullptr;
 #endif

@@ -13,8 +13,7 @@ using Kernel = void (*)(const PellucidSamplerJob*);
 
 Kernel sampler_of([[maybe_unused]] InstructionSet set) {
 #if PELLUCID_HAS_PACKETS
-  return kernel_of<Kernel>(set, pellucid_sample_packets_sse4, pellucid_sample_packets_avx2,
-                           pellucid_sample_packets_avx512);
+  return entry_of(set, PELLUCID_ENTRIES(pellucid_sample_packets));
 #else
   return nullptr;
 #endif
