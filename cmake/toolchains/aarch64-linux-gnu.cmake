@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 #
-# Builds for ARM64 with Debian's cross compiler and runs what was built with qemu. PELLUCID_ARM64_ROOT
-# is a folder in which the packages of that architecture are unpacked: scripts/test-arm64 makes it.
+# Builds for ARM64 with Debian's cross compiler and runs what was built with qemu.
+# PELLUCID_ARM64_ROOT is a folder in which the packages of that architecture are unpacked:
+# scripts/test-arm64 makes it.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(PELLUCID_ARM64_ROOT "" CACHE PATH "Packages of ARM64, unpacked")

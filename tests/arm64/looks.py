@@ -64,7 +64,8 @@ def write_data(folder):
 
     middle = (POINTS - 1) / 2
     (folder / "camera.json").write_text(json.dumps(
-        {"position": [-20, 45, -32], "focal_point": [middle] * 3, "up": [0, 1, 0], "vertical_angle": 35}))
+        {"position": [-20, 45, -32], "focal_point": [middle] * 3, "up": [0, 1, 0],
+         "vertical_angle": 35}))
 
     warm = [(0.0, 0.0, (0.1, 0.1, 0.4)), (0.4, 0.05, (0.2, 0.5, 0.9)), (0.55, 0.4, (0.9, 0.6, 0.2)),
             (0.8, 0.9, (1.0, 0.9, 0.8))]
