@@ -7,15 +7,14 @@
 #include "packet_setup.h"
 #include "packet_surfaces.h"
 #include "packet_tracer.h"
-#include "pellucid/render/integrate_ray.h"
-#include "pellucid/render/sample_preintegrated.h"
+#include "pellucid/render/sample_ray.h"
 #include "pellucid/scene/block_classes_storage.h"
 #include "pellucid/scene/transfer_tables_storage.h"
 #include "ray_tracer.h"
 #include "rays_in_planes.h"
 #include "sample/packet_sampler.h"
 #include "sample/preintegrated_storage.h"
-#include "sample/sampling_rule.h"
+#include "single_rays.h"
 #include "threads.h"
 
 namespace pellucid {
@@ -31,8 +30,8 @@ class UnivariateTracer : public RayTracer {
  public:
   explicit UnivariateTracer(const TracerTask& task);
 
-  /// Returns whether it has what the layer's light needs.
-  bool suits_light() const { return packets_ != nullptr; }
+  /// Returns whether its rays go in packets: those of lit layers have to.
+  bool has_packets() const { return packets_ != nullptr; }
   std::optional<Surroundings> surroundings() const override;
   bool keeps_to_ranges() const override { return integration_.method == Method::exact; }
   std::vector<RayResult> trace(const std::vector<RayPart>& parts,
@@ -49,9 +48,6 @@ class UnivariateTracer : public RayTracer {
  private:
   std::vector<RayResult> trace_one_by_one(const std::vector<RayPart>& in_grid,
                                           const TraceOptions& options) const;
-  template <class Value>
-  RayResult trace_one(const StructuredGrid<Value, double>& grid, const RayPart& part,
-                      const RayTolerance& wanted) const;
 
   const Integration integration_;
   const Volume& volume_;
@@ -125,43 +121,22 @@ std::optional<RayTracer::Surroundings> UnivariateTracer::surroundings() const {
 
 std::vector<RayResult> UnivariateTracer::trace_one_by_one(const std::vector<RayPart>& in_grid,
                                                           const TraceOptions& options) const {
-  std::vector<RayResult> results(in_grid.size());
   RayTolerance wanted = wanted_;
   wanted.tolerance *= options.share;
-  volume_.visit([&](const auto& grid) {
-    for (std::size_t i = 0; i < in_grid.size() && !options.stop.stop_requested(); ++i) {
-      results[i] = trace_one(grid, in_grid[i], wanted);
-    }
-  });
-  return results;
-}
-
-template <class Value>
-RayResult UnivariateTracer::trace_one(const StructuredGrid<Value, double>& grid,
-                                      const RayPart& part, const RayTolerance& wanted) const {
-  if (integration_.method == Method::exact) {
-    return integrate_ray(grid, blocks_ ? &*blocks_ : nullptr, part.ray, transfer_.tables(), wanted,
-                         depth_, part.range);
-  }
-  const double largest_color = transfer_function_.largest_color();
-  const SamplingRule rule = sampling_rule(integration_.method);
-  const auto sample = [&]<class T>(const PiecewiseLinear<T>& transfer) {
-    if (preintegrated_) {
-      return sample_preintegrated<T>(grid, part.ray, preintegrated_->view(), step_, largest_color,
-                                     stop_tolerance<T>(), depth_);
-    }
-    return sample_ray<T>(grid, part.ray, transfer, rule, step_, largest_color, stop_tolerance<T>(),
-                         depth_);
-  };
-  return integration_.precision == Precision::float64 ? sample(transfer_.tables().wide)
-                                                      : sample(transfer_.tables().single);
+  return trace_single_rays(
+      {integration_, volume_, transfer_.tables(), blocks_ ? &*blocks_ : nullptr,
+       preintegrated_ ? &preintegrated_->view() : nullptr, transfer_function_.largest_color(),
+       step_, depth_},
+      in_grid, wanted, options.stop);
 }
 
 }  // namespace
 
 std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task) {
   auto tracer = std::make_unique<UnivariateTracer>(task);
-  if (is_lit(task.layer) && !tracer->suits_light()) return nullptr;
+  const bool needs_packets =
+      is_lit(task.layer) || (task.integration.method == Method::exact && !has_single_rays());
+  if (needs_packets && !tracer->has_packets()) return nullptr;
   return tracer;
 }
 
