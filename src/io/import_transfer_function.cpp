@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pellucid/io/import_transfer_function.h"
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "foreign_readers.h"

@@ -2,6 +2,7 @@
 #include "pellucid/io/scene_json.h"
 
 #include <array>
+#include <nlohmann/json.hpp>
 
 #include "pellucid/scene/error.h"
 #include "scene_json_parts.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -241,6 +242,26 @@ void Node::expect_object(const std::vector<std::string_view>& known_keys) const 
               "unknown key" + (hint.empty() ? "; known here: " + list(known_keys) : hint));
     }
   }
+}
+
+bool Node::is_object() const noexcept {
+  return value_->is_object();
+}
+
+bool Node::is_array() const noexcept {
+  return value_->is_array();
+}
+
+bool Node::is_string() const noexcept {
+  return value_->is_string();
+}
+
+bool Node::is_number() const noexcept {
+  return value_->is_number();
+}
+
+bool Node::is_null() const noexcept {
+  return value_->is_null();
 }
 
 bool Node::is_true() const {

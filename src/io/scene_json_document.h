@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,11 +44,11 @@ class Node {
 
   /// Fails unless this is an object that has no keys but these.
   void expect_object(const std::vector<std::string_view>& known_keys) const;
-  bool is_object() const noexcept { return value_->is_object(); }
-  bool is_array() const noexcept { return value_->is_array(); }
-  bool is_string() const noexcept { return value_->is_string(); }
-  bool is_number() const noexcept { return value_->is_number(); }
-  bool is_null() const noexcept { return value_->is_null(); }
+  bool is_object() const noexcept;
+  bool is_array() const noexcept;
+  bool is_string() const noexcept;
+  bool is_number() const noexcept;
+  bool is_null() const noexcept;
   const nlohmann::json& value() const noexcept { return *value_; }
   /// true, or a number that is not 0, as other programs write it.
   bool is_true() const;
