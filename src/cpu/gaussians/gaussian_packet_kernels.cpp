@@ -7,7 +7,7 @@
 
 extern "C" void PELLUCID_ENTRY(pellucid_integrate_gaussian_packets)(
     const PellucidGaussianPacketJob* job) {
-  const pellucid::PacketGrid<void> grid(job->grid_and_rays);
+  const pellucid::PacketGrid grid(job->grid_and_rays);
   pellucid::GaussianPacket<PELLUCID_LANES> packet(*job, grid);
   packet.run();
 }

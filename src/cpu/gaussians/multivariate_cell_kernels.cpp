@@ -12,7 +12,7 @@ extern "C" void PELLUCID_ENTRY(pellucid_integrate_multivariate_cells)(
   constexpr int lanes = PELLUCID_LANES;
   using Packet = pellucid::MultivariateCellPacket<lanes>;
   const PellucidPacketJob& rays = job->grid_and_rays;
-  const pellucid::PacketGrid<void> grid(rays);
+  const pellucid::PacketGrid grid(rays);
   typename Packet::Room room;
   for (int first = 0; first < rays.count; first += lanes) {
     Packet packet(*job, grid, room, first, pellucid::min(lanes, rays.count - first));

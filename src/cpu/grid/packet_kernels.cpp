@@ -9,7 +9,5 @@
 
 extern "C" void PELLUCID_ENTRY(pellucid_integrate_packets)(const PellucidPacketJob* job) {
   const pellucid::FlushToZero mode;
-  pellucid::with_value_type(job->type, [job](auto value) {
-    pellucid::run_packets<pellucid::PacketIntegrator<decltype(value), PELLUCID_LANES>>(*job);
-  });
+  pellucid::run_packets<pellucid::PacketIntegrator<PELLUCID_LANES>>(*job);
 }

@@ -9,10 +9,5 @@
 
 extern "C" void PELLUCID_ENTRY(pellucid_meet_surfaces)(const PellucidPacketJob* job) {
   const pellucid::FlushToZero mode;
-  pellucid::with_value_type(job->type, [job](auto value) {
-    using Value = decltype(value);
-    if constexpr (std::is_same_v<Value, float> || sizeof(Value) <= 2) {
-      pellucid::run_packets<pellucid::SurfacePacket<Value, PELLUCID_LANES>>(*job);
-    }
-  });
+  pellucid::run_packets<pellucid::SurfacePacket<PELLUCID_LANES>>(*job);
 }

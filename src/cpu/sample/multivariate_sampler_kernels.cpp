@@ -9,7 +9,7 @@ extern "C" void PELLUCID_ENTRY(pellucid_sample_multivariate)(
     const PellucidMultivariateSamplerJob* job) {
   constexpr int lanes = PELLUCID_LANES;
   const PellucidPacketJob& rays = job->grid_and_rays;
-  const pellucid::PacketGrid<void> grid(rays);
+  const pellucid::PacketGrid grid(rays);
   for (int first = 0; first < rays.count; first += lanes) {
     pellucid::MultivariateSampler<lanes> packet(*job, grid, first,
                                                 pellucid::min(lanes, rays.count - first));

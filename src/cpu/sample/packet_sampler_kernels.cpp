@@ -6,29 +6,19 @@
 #include "pellucid/simd/flush_to_zero.h"
 #include "pellucid/simd/instruction_set.h"
 
-namespace {
-
-template <class Value>
-void run(const PellucidSamplerJob& job) {
+extern "C" void PELLUCID_ENTRY(pellucid_sample_packets)(const PellucidSamplerJob* job) {
+  const pellucid::FlushToZero mode;
   constexpr int lanes = PELLUCID_LANES;
-  const PellucidPacketJob& rays = job.grid_and_rays;
-  const pellucid::PacketGrid<Value> grid(rays);
+  const PellucidPacketJob& rays = job->grid_and_rays;
+  const pellucid::PacketGrid grid(rays);
   for (int first = 0; first < rays.count; first += lanes) {
-    pellucid::PacketSampler<Value, lanes> packet(job, grid, first,
-                                                 pellucid::min(lanes, rays.count - first));
-    if (job.rule == pellucid_preintegrated) {
+    pellucid::PacketSampler<lanes> packet(*job, grid, first,
+                                          pellucid::min(lanes, rays.count - first));
+    if (job->rule == pellucid_preintegrated) {
       packet.run_preintegrated();
     } else {
       packet.run_midpoint();
     }
     packet.store(rays.results);
   }
-}
-
-}  // namespace
-
-extern "C" void PELLUCID_ENTRY(pellucid_sample_packets)(const PellucidSamplerJob* job) {
-  const pellucid::FlushToZero mode;
-  pellucid::with_value_type(job->grid_and_rays.type,
-                            [job](auto value) { run<decltype(value)>(*job); });
 }

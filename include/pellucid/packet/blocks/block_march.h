@@ -10,7 +10,7 @@ namespace pellucid {
 
 /// Rays in lanes, from block to block of a grid; what is to be skipped is crossed in one step
 /// however large. In double: a place is known as well as from the eye.
-template <class Value, int N>
+template <int N>
 class BlockMarch {
  public:
   using D = Batch<double, N>;
@@ -22,7 +22,7 @@ class BlockMarch {
   double end[N];                         ///< world length inside of the grid
 
   /// Rays of lanes beyond `count` are not alive.
-  BlockMarch(const PacketGrid<Value>& grid, const PellucidRay* rays, int count) noexcept
+  BlockMarch(const PacketGrid& grid, const PellucidRay* rays, int count) noexcept
       : grid_(grid), rays_(grid, rays, count) {
     for (int a = 0; a < 3; ++a) {
       rays_.origin[a].store(origin[a]);
@@ -45,8 +45,8 @@ class BlockMarch {
   /// Finds the next stretches of the rays, until they are through, or come to a smooth one, or each
   /// has `most`, which is not more than may be. Adds 1 to `skipped` for each step over what is to
   /// be skipped.
-  [[gnu::flatten]] void find(Stretches<Value, N>& stretches, I& skipped,
-                             int most = Stretches<Value, N>::of_a_ray) noexcept {
+  [[gnu::flatten]] void find(Stretches<N>& stretches, I& skipped,
+                             int most = Stretches<N>::of_a_ray) noexcept {
     stretches.count = 0;
     smooth = M(false);
     I found(0);
@@ -101,7 +101,7 @@ class BlockMarch {
 
   /// Takes a lane back to a stretch that was taken for one of a single material, to be gone through
   /// cell by cell.
-  void go_back(int lane, const Stretches<Value, N>& stretches, int stretch) noexcept {
+  void go_back(int lane, const Stretches<N>& stretches, int stretch) noexcept {
     const M only = M::from_bits(1u << lane);
     I block[3];
     for (int a = 0; a < 3; ++a) block[a] = I(stretches.block[a][stretch]);
@@ -158,7 +158,7 @@ class BlockMarch {
     next_ = select(lanes, leave, next_);
   }
 
-  const PacketGrid<Value>& grid_;
+  const PacketGrid& grid_;
   LaneRays<N> rays_;
   D next_;           ///< where the block begins that each lane comes to next
   I next_block_[3];  ///< and which it is

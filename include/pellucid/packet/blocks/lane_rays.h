@@ -18,8 +18,7 @@ struct LaneRays {
   M forward[3], still[3];
 
   /// Rays of lanes beyond `count` end where they begin.
-  template <class Value>
-  LaneRays(const PacketGrid<Value>& grid, const PellucidRay* rays, int count) noexcept {
+  LaneRays(const PacketGrid& grid, const PellucidRay* rays, int count) noexcept {
     double o[3][N], d[3][N], b[N], e[N];
     constexpr PellucidRay none{};
     for (int l = 0; l < N; ++l) {

@@ -11,9 +11,9 @@ namespace pellucid {
 /// A uniform grid and its blocks as packets see them. Plane coordinates: those in which plane p of
 /// an axis stands at p (grid coordinates plus the padding); half cells at the border of
 /// cell-centred data are taken for whole ones, through which rays go half-way.
-template <class Value>
 struct PacketGrid {
-  const Value* data;
+  const void* data;
+  PellucidValue type;
   std::int32_t values[3], padding[3], cells[3], blocks[3];
   const std::int32_t* classes;  ///< BlockClass, as one number
   const std::int32_t* records;  ///< BlockRecord, as six of them
@@ -28,7 +28,8 @@ struct PacketGrid {
   }
 
   explicit PacketGrid(const PellucidPacketJob& job) noexcept
-      : data(static_cast<const Value*>(job.data)),
+      : data(job.data),
+        type(job.type),
         classes(static_cast<const std::int32_t*>(job.classes)),
         records(static_cast<const std::int32_t*>(job.records)),
         row(job.values[0]),
@@ -42,9 +43,10 @@ struct PacketGrid {
   }
 };
 
-/// Calls run(Value{}) with the type of a job's data.
+/// Calls run(Value{}) with the type of a job's data. Only what looks at values is compiled for each
+/// type: it is called for many of them at a time.
 template <class Run>
-void with_value_type(PellucidValue type, Run&& run) {
+[[gnu::always_inline]] inline void with_value_type(PellucidValue type, Run&& run) noexcept {
   switch (type) {
     case pellucid_u8:
       return run(std::uint8_t{});

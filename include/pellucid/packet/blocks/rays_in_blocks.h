@@ -9,7 +9,7 @@ namespace pellucid {
 
 /// Rays in lanes, and the blocks of a grid that they are in at a world length from where they enter
 /// it.
-template <class Value, int N>
+template <int N>
 class RaysInBlocks {
  public:
   using D = Batch<double, N>;
@@ -19,7 +19,7 @@ class RaysInBlocks {
   D end;  ///< world length inside of the grid
 
   /// Rays of lanes beyond `count` end where they begin.
-  RaysInBlocks(const PacketGrid<Value>& grid, const PellucidRay* rays, int count) noexcept
+  RaysInBlocks(const PacketGrid& grid, const PellucidRay* rays, int count) noexcept
       : grid_(&grid), rays_(grid, rays, count) {
     end = rays_.end;
   }
@@ -77,7 +77,7 @@ class RaysInBlocks {
 
  private:
   static_assert(block_width == 8);
-  const PacketGrid<Value>* grid_;
+  const PacketGrid* grid_;
   LaneRays<N> rays_;
 };
 

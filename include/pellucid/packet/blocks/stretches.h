@@ -8,7 +8,7 @@ namespace pellucid {
 /// Stretches of the rays of a packet, each inside of one block that is not to be skipped, in
 /// arrays: what lies ahead of the rays, to be gone through by as many lanes as there are, whichever
 /// ray's they are. Those of a ray come in order.
-template <class Value, int N>
+template <int N>
 struct Stretches {
   /// As many as that are found ahead of a ray at a time.
   static constexpr int of_a_ray = 12;
@@ -28,9 +28,9 @@ struct Stretches {
 };
 
 /// Stretches that are to be gone through cell by cell, packed, in order.
-template <class Value, int N>
+template <int N>
 struct Walks {
-  static constexpr int capacity = Stretches<Value, N>::capacity;
+  static constexpr int capacity = Stretches<N>::capacity;
 
   int count;
   std::int32_t stretch[capacity], ray[capacity];
@@ -42,7 +42,7 @@ struct Walks {
   /// By how much the data's derivative by world length varies along the ray: at most by
   /// jump + 2 bend · (length of a part), and by `variation` in all. Infinite where it is not known.
   float jump[capacity], bend[capacity], variation[capacity];
-  const Value* base[capacity];  ///< the value at the lower corner of cell `least`
+  const void* base[capacity];  ///< the value at the lower corner of cell `least`
 };
 
 }  // namespace pellucid

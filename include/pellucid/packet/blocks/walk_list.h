@@ -7,7 +7,7 @@
 namespace pellucid {
 
 /// Makes walks of stretches: where they begin in their blocks, and what is known of the data there.
-template <class Value, int N>
+template <int N>
 class WalkList {
  public:
   using F = Batch<float, N>;
@@ -15,8 +15,7 @@ class WalkList {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
-  WalkList(const PacketGrid<Value>& grid, const BlockMarch<Value, N>& rays) noexcept
-      : grid_(grid), rays_(rays) {
+  WalkList(const PacketGrid& grid, const BlockMarch<N>& rays) noexcept : grid_(grid), rays_(rays) {
     for (int a = 0; a < 3; ++a) {
       for (int l = 0; l < N; ++l) {
         direction_of_[a][l] = abs(static_cast<float>(rays.direction[a][l]));
@@ -24,11 +23,10 @@ class WalkList {
     }
   }
 
-  /// Fills `walks`. constant(lanes, stretch, value, length, left) takes stretches of one material
-  /// and says which it took.
-  template <class Constant>
-  void fill(Stretches<Value, N>& stretches, Walks<Value, N>& walks,
-            Constant&& constant) const noexcept {
+  /// Fills `walks` for data of this type. constant(lanes, stretch, value, length, left) takes
+  /// stretches of one material and says which it took.
+  template <class Value, class Constant>
+  void fill(Stretches<N>& stretches, Walks<N>& walks, Constant&& constant) const noexcept {
     for (int k = stretches.count; k < stretches.count + N; ++k) {
       stretches.ray[k] = stretches.constant[k] = 0;
       stretches.begin[k] = stretches.end[k] = 0;
@@ -36,13 +34,13 @@ class WalkList {
     }
     walks.count = 0;
     for (int first = 0; first < stretches.count; first += N) {
-      append(stretches, first, walks, constant);
+      append<Value>(stretches, first, walks, constant);
     }
   }
 
  private:
-  template <class Constant>
-  void append(const Stretches<Value, N>& stretches, int first, Walks<Value, N>& walks,
+  template <class Value, class Constant>
+  void append(const Stretches<N>& stretches, int first, Walks<N>& walks,
               Constant&& constant) const noexcept {
     std::int32_t number[N], first_value[3][N];
     for (int l = 0; l < N; ++l) number[l] = first + l;
@@ -58,7 +56,7 @@ class WalkList {
       max(first_of_block[a], I(0)).store(first_value[a]);
     }
     const auto base = [&](int l) noexcept {
-      return grid_.data +
+      return static_cast<const Value*>(grid_.data) +
              (first_value[0][l] + grid_.row * first_value[1][l] + grid_.slice * first_value[2][l]);
     };
     M lanes = (stretch < I(stretches.count)) & (length > D(0));
@@ -94,7 +92,7 @@ class WalkList {
   }
 
   /// As derivative_variation() and derivative_oscillation(), rounded upward.
-  void append_variation(M lanes, I ray, I block, Walks<Value, N>& walks) const noexcept {
+  void append_variation(M lanes, I ray, I block, Walks<N>& walks) const noexcept {
     I word[6];
     const I record = block * I(sizeof(BlockRecord) / sizeof(std::int32_t));
     for (int k = 1; k < 6; ++k) word[k] = gather(grid_.records + k, record);
@@ -115,8 +113,8 @@ class WalkList {
                  walks.variation + walks.count);
   }
 
-  const PacketGrid<Value>& grid_;
-  const BlockMarch<Value, N>& rays_;
+  const PacketGrid& grid_;
+  const BlockMarch<N>& rays_;
   float direction_of_[3][N];  ///< |direction|, by ray
 };
 

@@ -20,7 +20,7 @@ class MultichannelCells {
   using M = BatchMask<N>;
   using Rows = PanelRows<N, CubicBernstein>;
 
-  MultichannelCells(const PellucidPacketJob& job, const PacketGrid<void>& grid,
+  MultichannelCells(const PellucidPacketJob& job, const PacketGrid& grid,
                     const MultichannelGrid& fields, const PrimitiveSet* primitives, int first,
                     int count) noexcept
       : grid_(grid),
@@ -176,7 +176,7 @@ class MultichannelCells {
     return !is_nan(sum);
   }
 
-  const PacketGrid<void>& grid_;
+  const PacketGrid& grid_;
   const MultichannelGrid& fields_;
   const PrimitiveSet* primitives_;
   LaneRays<N> rays_;

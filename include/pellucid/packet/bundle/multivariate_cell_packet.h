@@ -24,8 +24,8 @@ class MultivariateCellPacket {
   using Panels = PanelLanes<N, CubicBernstein, NodePanels<N>>;
   using Room = typename Panels::Room;
 
-  MultivariateCellPacket(const PellucidGaussianPacketJob& job, const PacketGrid<void>& grid,
-                         Room& room, int first, int count) noexcept
+  MultivariateCellPacket(const PellucidGaussianPacketJob& job, const PacketGrid& grid, Room& room,
+                         int first, int count) noexcept
       : job_(job),
         rays_(job.grid_and_rays),
         mixture_(*static_cast<const NearMixture*>(job.mixture)),

@@ -44,14 +44,14 @@ Batch<float, N> end_of_cells(Batch<float, N> cell, Batch<float, N> last, Batch<d
 /// whichever ray's. Places are in double, so that planes are where all other means see them: beside
 /// vacuum nothing makes up for what one cell has too much. They count from the lower corner of the
 /// block and from where the ray enters it.
-template <class Value, int N>
+template <int N>
 class CellMarch {
  public:
   using F = Batch<float, N>;
   using D = Batch<double, N>;
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
-  using All = Walks<Value, N>;
+  using All = Walks<N>;
 
   /// The cells of one step.
   struct Step {
@@ -61,7 +61,7 @@ class CellMarch {
     F cell[3];     ///< in the block
   };
 
-  CellMarch(const PacketGrid<Value>& grid, const BlockMarch<Value, N>& rays) noexcept
+  CellMarch(const PacketGrid& grid, const BlockMarch<N>& rays) noexcept
       : load_(grid), direction_of_(rays.direction) {
     for (int l = 0; l < N; ++l) base_[l] = grid.data;
     for (int l = 0; l < N; ++l) fastest_of_[l] = 0;
@@ -80,7 +80,7 @@ class CellMarch {
   /// Begins with new walks.
   void begin() noexcept {
     next_ = 0;
-    stretch = I(Stretches<Value, N>::most);
+    stretch = I(Stretches<N>::most);
   }
 
   /// Whether enough lanes are free for walks that wait.
@@ -113,7 +113,9 @@ class CellMarch {
     return local;
   }
 
-  /// One cell of each of the lanes that walk; of the others something that can be read.
+  /// One cell of each of the lanes that walk, of data of this type; of the others something that
+  /// can be read.
+  template <class Value>
   void step(Step& s) noexcept {
     const M lanes = walking;
     D next[3];
@@ -123,7 +125,7 @@ class CellMarch {
     s.begin = begin_;
     s.end = max(min(min(next[0], next[1]), min(next[2], length_)), begin_);
     for (int a = 0; a < 3; ++a) s.cell[a] = cell_[a];
-    load_(base_, cell_, least_, highest_, s.from, s.corners);
+    load_.template load<Value>(base_, cell_, least_, highest_, s.from, s.corners);
 
     for (int a = 0; a < 3; ++a) {
       const F step = select(forward_[a], F(1), F(-1));
@@ -179,7 +181,7 @@ class CellMarch {
       least_[a] = load_spread(lanes, walks.least[a] + at, least_[a]);
       highest_[a] = load_spread(lanes, walks.highest[a] + at, highest_[a]);
     }
-    const Value* const* base = walks.base + at;
+    const void* const* base = walks.base + at;
     for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
       base_[__builtin_ctz(left)] = *base++;
     }
@@ -193,7 +195,7 @@ class CellMarch {
     walking = walking | lanes;
   }
 
-  const CornerLoads<Value, N> load_;
+  const CornerLoads<N> load_;
   const double (&direction_of_)[3][N];  ///< by ray
   double inverse_of_[3][N];
   float fastest_of_[N];  ///< the largest |direction|
@@ -207,7 +209,7 @@ class CellMarch {
   F least_[3], highest_[3];  ///< the cells whose values are there
   D begin_, length_;
   F fastest_;
-  const Value* base_[N];  ///< the value at the lower corner of cell `least`
+  const void* base_[N];  ///< the value at the lower corner of cell `least`
 };
 
 }  // namespace pellucid

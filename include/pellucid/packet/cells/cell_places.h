@@ -17,9 +17,9 @@ struct CellPlaces {
 
 /// Where CellMarch has the lanes' own rays go through a cell of a stretch. `in_block`: the cell, in
 /// its block.
-template <class Value, int N>
-CellPlaces<N> cell_places(const PacketGrid<Value>& grid, const BlockMarch<Value, N>& rays,
-                          const Stretches<Value, N>& stretches, Batch<std::int32_t, N> stretch,
+template <int N>
+CellPlaces<N> cell_places(const PacketGrid& grid, const BlockMarch<N>& rays,
+                          const Stretches<N>& stretches, Batch<std::int32_t, N> stretch,
                           const Batch<std::int32_t, N>* in_block) noexcept {
   using F = Batch<float, N>;
   using D = Batch<double, N>;

@@ -10,12 +10,16 @@
 namespace pellucid {
 
 /// Begins the lanes' spans anew in double, from the share `from` of their cells on.
-template <class Value, int N>
-[[gnu::noinline]] void begin_spans_in_double(const PacketGrid<Value>& grid, BatchMask<N> lanes,
+template <int N>
+[[gnu::noinline]] void begin_spans_in_double(const PacketGrid& grid, BatchMask<N> lanes,
                                              const CellPlaces<N>& of, Batch<double, N> from,
                                              SpanLanes<double, N>& span) noexcept {
   using D = Batch<double, N>;
-  const CellCorners<D> corners = ExactCorners<N>(grid, of.cell)(grid.data);
+  const ExactCorners<N> load(grid, of.cell);
+  CellCorners<D> corners;
+  with_value_type(grid.type, [&](auto value) noexcept {
+    corners = load(static_cast<const decltype(value)*>(grid.data));
+  });
   const CubicBernstein<D> all = trilinear_cubic(corners, of.entry, of.exit);
   // As data_rounding() in segment/rounding.h, but of the corners, which may cancel along the ray.
   D size(0);

@@ -24,14 +24,14 @@ void repeat_border(const Place* cell, const Place* from, CellCorners<T>& corners
 }
 
 /// Loads the corners of cells, one in each lane, that are given in their block.
-template <class Value, int N>
+template <int N>
 class CornerLoads {
  public:
   using F = Batch<float, N>;
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
-  explicit CornerLoads(const PacketGrid<Value>& grid) noexcept
+  explicit CornerLoads(const PacketGrid& grid) noexcept
       : padded(grid.padded()), row_(grid.row), slice_(grid.slice) {}
 
   const bool padded;  ///< whether there are cells outside of the outermost values
@@ -39,8 +39,9 @@ class CornerLoads {
   /// `base`: the value at the lower corner of cell `least`. At a border of cell-centred data both
   /// values of a cell are the border's: the cell `from` is taken, from `least` to `highest`, which
   /// have values. Where nothing is padded, neither is looked at.
-  void operator()(const Value* const* base, const F* cell, const F* least, const F* highest,
-                  F* from, CellCorners<F>& corners) const noexcept {
+  template <class Value>
+  void load(const void* const* base, const F* cell, const F* least, const F* highest, F* from,
+            CellCorners<F>& corners) const noexcept {
     I place[3];
     for (int a = 0; a < 3; ++a) {
       from[a] = padded ? clamp(cell[a], least[a], highest[a]) : cell[a];
@@ -51,7 +52,7 @@ class CornerLoads {
     std::int32_t o[N];
     offset.store(o);
     const Value* at[N];
-    for (int l = 0; l < N; ++l) at[l] = base[l] + o[l];
+    for (int l = 0; l < N; ++l) at[l] = static_cast<const Value*>(base[l]) + o[l];
     const std::ptrdiff_t rows[4] = {0, row_, slice_, slice_ + row_};
     for (int k = 0; k < 4; ++k) {
       gather_pairs(at, SameOffset{rows[k]}, corners.value[2 * k], corners.value[2 * k + 1]);

@@ -20,8 +20,7 @@ class ExactCorners {
   using I = Batch<std::int32_t, N>;
 
   /// `cell`: in plane coordinates; one outside of the grid counts as the nearest.
-  template <class Value>
-  ExactCorners(const PacketGrid<Value>& grid, const I* cell) noexcept
+  ExactCorners(const PacketGrid& grid, const I* cell) noexcept
       : padded_(grid.padded()), row_(grid.row), slice_(grid.slice) {
     std::int32_t first[3][N];
     for (int a = 0; a < 3; ++a) {

@@ -12,20 +12,23 @@
 namespace pellucid {
 
 /// Loads the gradients of cells, one in each lane, from the data in their own type.
-template <class Value, int N>
+template <int N>
 class GradientLoads {
  public:
   using F = Batch<float, N>;
   using M = BatchMask<N>;
 
-  GradientLoads(const PacketGrid<Value>& grid, const PacketLight& light) noexcept
+  GradientLoads(const PacketGrid& grid, const PacketLight& light) noexcept
       : grid_(grid), light_(light) {}
 
   /// The gradient's components in the world, along the lanes' ways through their cells, and, if
   /// there is a factor of it, the magnitude.
   void operator()(M lanes, const CellPlaces<N>& places, CubicBernstein<F> (&gradient)[3],
                   CubicBernstein<F>& magnitude) const noexcept {
-    load(lanes, places);
+    with_value_type(grid_.type, [&](auto value) noexcept {
+      load<decltype(value)>(lanes, places);
+      may_have_vacuum_ = !std::is_integral_v<decltype(value)>;
+    });
     const Vec3<F> entry{convert<float>(places.entry.x), convert<float>(places.entry.y),
                         convert<float>(places.entry.z)};
     const Vec3<F> exit{convert<float>(places.exit.x), convert<float>(places.exit.y),
@@ -67,9 +70,11 @@ class GradientLoads {
   bool within_cells() const noexcept { return light_.of_field != 0 && light_.factor == nullptr; }
 
   /// Loads corners and what is beyond them along each axis.
-  void load(M lanes, const CellPlaces<N>& places) const noexcept {
+  template <class Value>
+  [[gnu::flatten, gnu::noinline]] void load(M lanes, const CellPlaces<N>& places) const noexcept {
     std::int32_t cell[3][N];
     for (int a = 0; a < 3; ++a) places.cell[a].store(cell[a]);
+    const Value* const data = static_cast<const Value*>(grid_.data);
     const Value* lowest[N];
     unsigned at_border = 0;
     for (int l = 0; l < N; ++l) {
@@ -82,8 +87,7 @@ class GradientLoads {
         flat_[a][l] = 0;
       }
       at_border |= inner ? 0u : 1u << l;
-      lowest[l] =
-          inner ? grid_.data + place[0] + place[1] * grid_.row + place[2] * grid_.slice : nullptr;
+      lowest[l] = inner ? data + place[0] + place[1] * grid_.row + place[2] * grid_.slice : nullptr;
     }
     at_border &= bits(lanes);
     if (const unsigned inner = bits(lanes) & ~at_border; inner != 0) {
@@ -94,11 +98,12 @@ class GradientLoads {
     for (unsigned left = at_border; left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
       const std::int32_t of_lane[3] = {cell[0][l], cell[1][l], cell[2][l]};
-      load_at_border(l, of_lane);
+      load_at_border<Value>(l, of_lane);
     }
   }
 
   /// Loads a cell in each lane that has values on all sides, from the place of its lowest corner.
+  template <class Value>
   void load_inner(const Value* const (&lowest)[N]) const noexcept {
     const auto pair = [&](int i, int j, int k, float* first, float* second) noexcept {
       F a, b;
@@ -119,6 +124,7 @@ class GradientLoads {
     }
   }
 
+  template <class Value>
   void load_at_border(int l, const std::int32_t (&cell)[3]) const noexcept {
     const std::ptrdiff_t stride[3] = {1, grid_.row, grid_.slice};
     std::ptrdiff_t at[3][4];  // before, lower, upper, behind
@@ -135,7 +141,7 @@ class GradientLoads {
       has_behind_[a][l] = upper < last ? 1.0f : 0.0f;
       flat_[a][l] = lower == upper ? 1.0f : 0.0f;
     }
-    const Value* const data = grid_.data;
+    const Value* const data = static_cast<const Value*>(grid_.data);
     for (int n = 0; n < 8; ++n) {
       const int i = 1 + (n & 1), j = 1 + (n >> 1 & 1), k = 1 + (n >> 2);
       corner_[n][l] = static_cast<float>(data[at[0][i] + at[1][j] + at[2][k]]);
@@ -147,6 +153,10 @@ class GradientLoads {
   }
 
   /// The derivative along an axis at the corners, by the distance of two values (GradientKind).
+  CellCorners<F> derivative(int a, bool of_field) const noexcept {
+    return may_have_vacuum_ ? derivative<true>(a, of_field) : derivative<false>(a, of_field);
+  }
+  template <bool may_have_vacuum>
   CellCorners<F> derivative(int a, bool of_field) const noexcept {
     CellCorners<F> result;
     const M flat = F::load(flat_[a]) > F(0);
@@ -165,7 +175,7 @@ class GradientLoads {
       const F in_cell = select(flat, across_step, step);
       M has_own = F::load(is_upper ? has_behind_[a] : has_before_[a]) > F(0);
       M has_cell = (!flat) | (F::load(is_upper ? has_before_[a] : has_behind_[a]) > F(0));
-      if constexpr (!std::is_integral_v<Value>) {
+      if constexpr (may_have_vacuum) {
         has_own = has_own & !is_nan(own);
         has_cell = has_cell & !is_nan(in_cell);
       }
@@ -175,8 +185,9 @@ class GradientLoads {
     return result;
   }
 
-  const PacketGrid<Value>& grid_;
+  const PacketGrid& grid_;
   const PacketLight& light_;
+  mutable bool may_have_vacuum_ = false;
   mutable float corner_[8][N] = {}, outside_[3][8][N] = {};
   mutable float has_before_[3][N] = {}, has_behind_[3][N] = {}, flat_[3][N] = {};
 };

@@ -10,8 +10,8 @@
 namespace pellucid {
 
 /// Returns places in the world, from the middle of the grid, of plane coordinates.
-template <class Value, int N>
-Vec3<Batch<float, N>> place_in_world(const PacketGrid<Value>& grid, const PacketLight& light,
+template <int N>
+Vec3<Batch<float, N>> place_in_world(const PacketGrid& grid, const PacketLight& light,
                                      const Batch<std::int32_t, N> (&cell)[3],
                                      const Vec3<Batch<double, N>>& in_cell) noexcept {
   using D = Batch<double, N>;
@@ -33,9 +33,9 @@ inline float place_rounding(const PacketLight& light) noexcept {
 }
 
 /// Returns the directions in the world from which the lanes' rays come, of length 1.
-template <class Value, int N>
+template <int N>
 Vec3<Batch<float, N>> direction_to_eye(const PacketLight& light,
-                                       const BlockMarch<Value, N>& rays) noexcept {
+                                       const BlockMarch<N>& rays) noexcept {
   using D = Batch<double, N>;
   Vec3<Batch<float, N>> result;
   for (int c = 0; c < 3; ++c) {
@@ -60,15 +60,14 @@ struct LightOfPiece {
 };
 
 /// The light of the spans that lanes work on.
-template <class Value, int N>
+template <int N>
 class LightLanes {
  public:
   using F = Batch<float, N>;
   using D = Batch<double, N>;
   using M = BatchMask<N>;
 
-  LightLanes(const PacketGrid<Value>& grid, const PacketLight& light,
-             const BlockMarch<Value, N>& rays) noexcept
+  LightLanes(const PacketGrid& grid, const PacketLight& light, const BlockMarch<N>& rays) noexcept
       : grid_(grid), light_(light), loads_(grid, light), to_eye_(direction_to_eye(light, rays)) {
     const Reflection<float>& r = light.reflection;
     float brightest = r.ambient;
@@ -340,9 +339,9 @@ class LightLanes {
         });
   }
 
-  const PacketGrid<Value>& grid_;
+  const PacketGrid& grid_;
   const PacketLight& light_;
-  GradientLoads<Value, N> loads_;
+  GradientLoads<N> loads_;
   Vec3<F> to_eye_;
   float inverse_light_;  ///< 1 / the brightest factor of a color
   CubicBernstein<F> gradient_[3];

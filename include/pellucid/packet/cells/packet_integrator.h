@@ -30,10 +30,9 @@ namespace pellucid {
 /// what binary32 is not good enough for is handed back at once. The values of isosurfaces are
 /// control points of the extinction, so that pieces end where a ray meets one (surface_lanes.h). If
 /// binary32 cannot tell whether it does, the ray's error is infinite: it is for the general path.
-template <class Value, int N, bool is_lit = false>
+template <int N, bool is_lit = false>
 class PacketIntegrator {
  public:
-  using Data = Value;
   static constexpr int lane_count = N;
   using F = Batch<float, N>;
   using D = Batch<double, N>;
@@ -41,13 +40,13 @@ class PacketIntegrator {
   using M = BatchMask<N>;
 
   /// What many packets have one after the other.
-  struct Room : SpanRoom<Value, N> {
+  struct Room : SpanRoom<N> {
     StepLengths<N> step_lengths;
   };
 
   /// Of rays first … first + count - 1 of the job, count <= N.
-  PacketIntegrator(const PellucidPacketJob& job, const PacketGrid<Value>& grid, Room& room,
-                   int first, int count) noexcept
+  PacketIntegrator(const PellucidPacketJob& job, const PacketGrid& grid, Room& room, int first,
+                   int count) noexcept
       : job_(job),
         grid_(grid),
         transfer_(*static_cast<const BinnedTransfer*>(job.transfer)),
@@ -112,12 +111,12 @@ class PacketIntegrator {
 
  private:
   struct Unlit {};
-  using Light = std::conditional_t<is_lit, LightLanes<Value, N>, Unlit>;
+  using Light = std::conditional_t<is_lit, LightLanes<N>, Unlit>;
   using Like = std::conditional_t<is_lit, LikeErrors<F>, Unlit>;
   using Surfaces = std::conditional_t<is_lit, SurfaceLanes<N>, Unlit>;
 
-  static Light make_light(const PellucidPacketJob& job, const PacketGrid<Value>& grid,
-                          const BlockMarch<Value, N>& rays) noexcept {
+  static Light make_light(const PellucidPacketJob& job, const PacketGrid& grid,
+                          const BlockMarch<N>& rays) noexcept {
     if constexpr (is_lit) {
       return Light(grid, *static_cast<const PacketLight*>(job.light), rays);
     } else {
@@ -145,12 +144,14 @@ class PacketIntegrator {
 
   void find_spans() noexcept {
     blocks_.find(room_.stretches, skipped_);
-    finder_(room_.stretches, room_.walks, room_.rows, cells_seen_);
+    with_value_type(grid_.type, [this](auto value) noexcept {
+      finder_.template find<decltype(value)>(room_.stretches, room_.walks, room_.rows, cells_seen_);
+    });
   }
 
   /// Gives the lanes without a span the next one of their ray, if there is any.
   [[gnu::flatten]] void take_spans() noexcept {
-    using Rows = SpanRows<Value, N>;
+    using Rows = SpanRows<N>;
     F row[Rows::fields];
     const M lanes = queue_.take(!pending_, room_.rows, row);
     if (none(lanes)) return;
@@ -216,7 +217,7 @@ class PacketIntegrator {
   [[gnu::flatten]] void step_smooth() noexcept {
     const M on = smooth_.walking;
     const D from = smooth_.at;
-    const typename SmoothMarch<Value, N>::Steps steps = smooth_.look();
+    const typename SmoothMarch<N>::Steps steps = smooth_.look();
     samples_taken_ += select(on, I(4), I(0));
     const SegmentResult<F>& s = steps.found.segment;
     const F left = convert<float>(D::load(blocks_.end) - from);
@@ -538,17 +539,17 @@ class PacketIntegrator {
   }
 
   const PellucidPacketJob& job_;
-  const PacketGrid<Value>& grid_;
+  const PacketGrid& grid_;
   const BinnedTransfer& transfer_;
   Room& room_;
   int first_, count_;
-  BlockMarch<Value, N> blocks_;
-  SpanFinder<Value, N> finder_;
+  BlockMarch<N> blocks_;
+  SpanFinder<N> finder_;
   Light light_;
   Surfaces surfaces_;
-  SmoothMarch<Value, N> smooth_;
+  SmoothMarch<N> smooth_;
 
-  SpanQueue<Value, N> queue_;
+  SpanQueue<N> queue_;
 
   // The span that a lane works on.
   M pending_{false};

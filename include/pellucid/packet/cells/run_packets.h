@@ -8,7 +8,7 @@ namespace pellucid {
 /// Has packets follow the rays of a job, one after the other.
 template <class Packet>
 void run_packets(const PellucidPacketJob& job) noexcept {
-  const PacketGrid<typename Packet::Data> grid(job);
+  const PacketGrid grid(job);
   typename Packet::Room room;
   for (int first = 0; first < job.count; first += Packet::lane_count) {
     const int left = job.count - first;

@@ -9,18 +9,18 @@
 namespace pellucid {
 
 /// Spans that absorb, as rows of floats: eight of each, those of a stretch one behind the other.
-template <class Value, int N>
+template <int N>
 struct SpanRows {
   static constexpr int fields = 8;
   /// A ray crosses at most 22 cells of a block; the row behind the last one is written to.
   static constexpr int of_a_stretch = 23;
 
   /// Data b0 … b3; their rounding; world length; of the ray from its begin on; SpanCode.
-  float row[(Stretches<Value, N>::most + 1) * of_a_stretch * fields];
+  float row[(Stretches<N>::most + 1) * of_a_stretch * fields];
 
   // Per ray, the stretches that have spans: where their rows begin and end.
   int stretches[N];
-  std::int32_t first[N][Stretches<Value, N>::of_a_ray], end[N][Stretches<Value, N>::of_a_ray];
+  std::int32_t first[N][Stretches<N>::of_a_ray], end[N][Stretches<N>::of_a_ray];
 };
 
 /// What else is known of a span, in a whole number that a float holds exactly: the sum of these.
@@ -45,53 +45,56 @@ static_assert(block_width == 8 && SpanCode::cell[2] == 1 << 6 && SpanCode::stret
 
 /// Finds what of rays' stretches absorbs: from cell to cell, their range and then the hull of the
 /// data along the ray against the marks of the transfer function.
-template <class Value, int N>
+template <int N>
 class SpanFinder {
  public:
   using F = Batch<float, N>;
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
-  using All = Stretches<Value, N>;
-  using Rows = SpanRows<Value, N>;
+  using All = Stretches<N>;
+  using Rows = SpanRows<N>;
 
   /// `lit`: blocks of one material are gone through cell by cell, for light changes in them.
-  SpanFinder(const PacketGrid<Value>& grid, const BlockMarch<Value, N>& rays,
-             const BinnedTransfer& transfer, bool lit = false) noexcept
+  SpanFinder(const PacketGrid& grid, const BlockMarch<N>& rays, const BinnedTransfer& transfer,
+             bool lit = false) noexcept
       : transfer_(transfer), list_(grid, rays), cells_(grid, rays), lit_(lit) {}
 
-  /// Adds to `cells` those looked at, per ray.
-  void operator()(All& stretches, Walks<Value, N>& walks, Rows& rows,
-                  std::int32_t* cells) noexcept {
+  /// Looks at data of this type. Adds to `cells` those looked at, per ray.
+  template <class Value>
+  void find(All& stretches, Walks<N>& walks, Rows& rows, std::int32_t* cells) noexcept {
     for (int i = 0; i < stretches.count; ++i) stretches.cells[i] = stretches.spans[i] = 0;
-    fill(stretches, walks, rows);
+    fill<Value>(stretches, walks, rows);
     cells_.begin();
     row_ = I(All::most * Rows::of_a_stretch);
     seen_ = I(0);
-    while (take(walks, stretches)) step_cells(rows);
+    while (take(walks, stretches)) step_cells<Value>(rows);
     list(stretches, rows, cells);
   }
 
  private:
-  [[gnu::flatten]] void fill(All& stretches, Walks<Value, N>& walks, Rows& rows) noexcept {
-    list_.fill(stretches, walks, [&](M lanes, I stretch, F value, F length, F left) noexcept {
-      lanes = is_constant(lanes, value);
-      const I number = select(lanes, stretch, I(All::most));
-      const F code = convert<float>(number) * F(SpanCode::stretch) + F(SpanCode::whole_block);
-      const F rounding = F(4 * rounding_unit<float>) * abs(value);
-      const F span[] = {value, value, value, value, rounding, length, left, code};
-      store_records<Rows::fields>(span, rows.row, number * I(Rows::of_a_stretch));
-      std::int32_t at[N];
-      stretch.store(at);
-      for (int l = 0; l < N; ++l) {
-        if (lanes[l]) stretches.spans[at[l]] = 1;
-      }
-      return lanes;
-    });
+  template <class Value>
+  [[gnu::flatten]] void fill(All& stretches, Walks<N>& walks, Rows& rows) noexcept {
+    list_.template fill<Value>(
+        stretches, walks, [&](M lanes, I stretch, F value, F length, F left) noexcept {
+          lanes = is_constant<Value>(lanes, value);
+          const I number = select(lanes, stretch, I(All::most));
+          const F code = convert<float>(number) * F(SpanCode::stretch) + F(SpanCode::whole_block);
+          const F rounding = F(4 * rounding_unit<float>) * abs(value);
+          const F span[] = {value, value, value, value, rounding, length, left, code};
+          store_records<Rows::fields>(span, rows.row, number * I(Rows::of_a_stretch));
+          std::int32_t at[N];
+          stretch.store(at);
+          for (int l = 0; l < N; ++l) {
+            if (lanes[l]) stretches.spans[at[l]] = 1;
+          }
+          return lanes;
+        });
   }
 
   /// Whether blocks of one material are one span: that of any value in the block, so of the one at
   /// its first corner, as binary32 has it. Not beside a jump, which may lie between a value and its
   /// rounding, and not of types that binary32 rounds: the function may be steep there.
+  template <class Value>
   M is_constant(M lanes, F value) const noexcept {
     constexpr bool exact = std::is_same_v<Value, float> || sizeof(Value) < sizeof(float);
     if (!exact || lit_) return M(false);
@@ -102,7 +105,7 @@ class SpanFinder {
   }
 
   /// Whether there is anything left to be gone through.
-  [[gnu::flatten]] bool take(const Walks<Value, N>& walks, All& stretches) noexcept {
+  [[gnu::flatten]] bool take(const Walks<N>& walks, All& stretches) noexcept {
     if (cells_.wants(walks)) {
       note(stretches);
       const M begun = cells_.take(walks);
@@ -112,10 +115,11 @@ class SpanFinder {
     return any(cells_.walking);
   }
 
+  template <class Value>
   [[gnu::flatten]] void step_cells(Rows& rows) noexcept {
-    typename CellMarch<Value, N>::Step& step = step_;
+    typename CellMarch<N>::Step& step = step_;
     const M ready = cells_.walking;
-    cells_.step(step);
+    cells_.template step<Value>(step);
     seen_ += select(ready, I(1), I(0));
     const F* v = step.corners.value;
     F lower = v[0], upper = v[0];
@@ -147,7 +151,7 @@ class SpanFinder {
 
   /// Puts down what of the lanes' cells is a span.
   void put_down(M found, const CubicBernstein<F>& data, F rounding, Rows& rows) noexcept {
-    const typename CellMarch<Value, N>::Step& step = step_;
+    const typename CellMarch<N>::Step& step = step_;
     const F least = data.hull_min() - rounding, most = data.hull_max() + rounding;
     F code = convert<float>(cells_.stretch) * F(SpanCode::stretch);
     for (int a = 0; a < 3; ++a) code += F(SpanCode::cell[a]) * step.cell[a];
@@ -257,10 +261,10 @@ class SpanFinder {
   }
 
   const BinnedTransfer& transfer_;
-  WalkList<Value, N> list_;
-  CellMarch<Value, N> cells_;
+  WalkList<N> list_;
+  CellMarch<N> cells_;
   bool lit_;
-  typename CellMarch<Value, N>::Step step_;
+  typename CellMarch<N>::Step step_;
   I row_;   ///< that each lane's next span goes to
   I seen_;  ///< cells of the lane's stretch
 };

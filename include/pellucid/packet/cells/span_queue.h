@@ -8,11 +8,11 @@
 namespace pellucid {
 
 /// Where the spans of packets are found, one packet after the other.
-template <class Value, int N>
+template <int N>
 struct SpanRoom {
-  Stretches<Value, N> stretches;
-  Walks<Value, N> walks;
-  SpanRows<Value, N> rows;
+  Stretches<N> stretches;
+  Walks<N> walks;
+  SpanRows<N> rows;
 };
 
 /// How far spans' ends of rays first … first + count - 1 may be from where they are thought to be:
@@ -28,9 +28,9 @@ Batch<float, N> span_end_errors(const PellucidPacketJob& job, int first, int cou
 }
 
 /// Where the lanes' own rays go through the cells of spans.
-template <class Value, int N>
-CellPlaces<N> span_places(const PacketGrid<Value>& grid, const BlockMarch<Value, N>& rays,
-                          const Stretches<Value, N>& stretches, BatchMask<N> lanes,
+template <int N>
+CellPlaces<N> span_places(const PacketGrid& grid, const BlockMarch<N>& rays,
+                          const Stretches<N>& stretches, BatchMask<N> lanes,
                           Batch<std::int32_t, N> code) noexcept {
   using I = Batch<std::int32_t, N>;
   code = select(lanes, code, I(0));
@@ -40,13 +40,13 @@ CellPlaces<N> span_places(const PacketGrid<Value>& grid, const BlockMarch<Value,
 }
 
 /// The spans that were found of rays and are not taken yet, for each lane those of its own ray.
-template <class Value, int N>
+template <int N>
 class SpanQueue {
  public:
   using F = Batch<float, N>;
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
-  using Rows = SpanRows<Value, N>;
+  using Rows = SpanRows<N>;
 
   SpanQueue() noexcept {
     std::int32_t lane[N];
@@ -64,7 +64,7 @@ class SpanQueue {
   M take(M wanted, const Rows& rows, F (&row)[Rows::fields]) noexcept {
     const M over = wanted & (row_ >= end_row_) & (stretch_of_ray_ < stretches_);
     if (any(over)) {
-      const I at = select(over, lane_ * I(Stretches<Value, N>::of_a_ray) + stretch_of_ray_, I(0));
+      const I at = select(over, lane_ * I(Stretches<N>::of_a_ray) + stretch_of_ray_, I(0));
       row_ = select(over, gather(rows.first[0], at), row_);
       end_row_ = select(over, gather(rows.end[0], at), end_row_);
       stretch_of_ray_ += select(over, I(1), I(0));

@@ -15,20 +15,19 @@ namespace pellucid {
 /// A ray knows between which values its data are (SurfaceLanes); where they leave that range is a
 /// surface. Where binary32 cannot tell, or what a surface costs is more than the tolerance, the
 /// ray's error is infinite: it is for the general path.
-template <class Value, int N>
+template <int N>
 class SurfacePacket {
  public:
-  using Data = Value;
   static constexpr int lane_count = N;
   using F = Batch<float, N>;
   using D = Batch<double, N>;
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
-  using Room = SpanRoom<Value, N>;
+  using Room = SpanRoom<N>;
 
   /// Of rays first … first + count - 1 of the job, count <= N.
-  SurfacePacket(const PellucidPacketJob& job, const PacketGrid<Value>& grid, Room& room, int first,
+  SurfacePacket(const PellucidPacketJob& job, const PacketGrid& grid, Room& room, int first,
                 int count) noexcept
       : job_(job),
         grid_(grid),
@@ -50,7 +49,10 @@ class SurfacePacket {
   void run() noexcept {
     while (any(blocks_.alive)) {
       blocks_.find(room_.stretches, skipped_, stretches_ahead);
-      finder_(room_.stretches, room_.walks, room_.rows, cells_seen_);
+      with_value_type(grid_.type, [this](auto value) noexcept {
+        finder_.template find<decltype(value)>(room_.stretches, room_.walks, room_.rows,
+                                               cells_seen_);
+      });
       queue_.begin(room_.rows);
       for (take_spans(); any(pending_); take_spans()) follow(pending_);
     }
@@ -79,7 +81,7 @@ class SurfacePacket {
   static constexpr float margin = SurfaceLanes<N>::margin;
 
   [[gnu::flatten]] void take_spans() noexcept {
-    using Rows = SpanRows<Value, N>;
+    using Rows = SpanRows<N>;
     F row[Rows::fields];
     const M lanes = queue_.take(!pending_, room_.rows, row);
     if (none(lanes)) return;
@@ -181,14 +183,14 @@ class SurfacePacket {
   }
 
   const PellucidPacketJob& job_;
-  const PacketGrid<Value>& grid_;
+  const PacketGrid& grid_;
   const PacketLight& light_;
   Room& room_;
   int first_, count_;
-  BlockMarch<Value, N> blocks_;
-  SpanFinder<Value, N> finder_;
-  GradientLoads<Value, N> gradients_;
-  SpanQueue<Value, N> queue_;
+  BlockMarch<N> blocks_;
+  SpanFinder<N> finder_;
+  GradientLoads<N> gradients_;
+  SpanQueue<N> queue_;
   Vec3<F> to_eye_;
   SurfaceLanes<N> surfaces_;
   F place_error_;  ///< how far spans' ends may be from where they are thought to be, world length

@@ -23,8 +23,8 @@ class MultivariateSampler {
   using M = BatchMask<N>;
 
   /// Of rays first … first + count - 1 of the job, count <= N.
-  MultivariateSampler(const PellucidMultivariateSamplerJob& job, const PacketGrid<void>& grid,
-                      int first, int count) noexcept
+  MultivariateSampler(const PellucidMultivariateSamplerJob& job, const PacketGrid& grid, int first,
+                      int count) noexcept
       : fields_(*static_cast<const MultichannelGrid*>(job.grid)),
         primitives_(static_cast<const PrimitiveSet*>(job.primitives)),
         transfer_(*static_cast<const SampledMultivariate*>(job.transfer)),
@@ -60,7 +60,7 @@ class MultivariateSampler {
   }
 
  private:
-  using Steps = SamplerSteps<void, N>;
+  using Steps = SamplerSteps<N>;
   static constexpr int most = Steps::most_at_once;
 
   template <int K>

@@ -14,7 +14,7 @@ namespace pellucid {
 /// Samples N rays at once at a fixed step, each in a lane of its own: the midpoint rule of
 /// render/sample_ray.h, or render/sample_preintegrated.h, at the same places. What a ray becomes
 /// depends on no other lane.
-template <class Value, int N>
+template <int N>
 class PacketSampler {
  public:
   using F = Batch<float, N>;
@@ -23,7 +23,7 @@ class PacketSampler {
   using M = BatchMask<N>;
 
   /// Of rays first … first + count - 1 of the job, count <= N.
-  PacketSampler(const PellucidSamplerJob& job, const PacketGrid<Value>& grid, int first,
+  PacketSampler(const PellucidSamplerJob& job, const PacketGrid& grid, int first,
                 int count) noexcept
       : transfer_(*static_cast<const SamplerTransfer*>(job.transfer)),
         table_(*static_cast<const PreintegratedTable*>(job.preintegrated)),
@@ -142,7 +142,7 @@ class PacketSampler {
   }
 
  private:
-  static constexpr int most = SamplerMarch<Value, N>::most_at_once;
+  static constexpr int most = SamplerMarch<N>::most_at_once;
 
   void end_steps() noexcept {
     fold_.fold();
@@ -186,7 +186,7 @@ class PacketSampler {
   bool by_opacity_;  ///< the depth: steps have none of their own
   double step_, stop_;
   int first_, count_;
-  SamplerMarch<Value, N> march_;
+  SamplerMarch<N> march_;
   SamplerFold<N> fold_;
   I samples_;
 };

@@ -9,16 +9,15 @@ namespace pellucid {
 
 /// Rays in lanes that take steps of one length, and the data around them. Places are found in
 /// double at the beginning of every few steps, and in float from there (sample_places.h).
-template <class Value, int N>
-class SamplerMarch : public SamplerSteps<Value, N> {
+template <int N>
+class SamplerMarch : public SamplerSteps<N> {
  public:
-  using Steps = SamplerSteps<Value, N>;
+  using Steps = SamplerSteps<N>;
   using typename Steps::D;
   using typename Steps::F;
 
   /// Rays of lanes beyond `count` are not alive.
-  SamplerMarch(const PacketGrid<Value>& grid, const PellucidRay* rays, int count,
-               double step) noexcept
+  SamplerMarch(const PacketGrid& grid, const PellucidRay* rays, int count, double step) noexcept
       : Steps(grid, rays, count, step), samples_(grid) {
     samples_.set_direction(Steps::direction());
   }
@@ -46,7 +45,7 @@ class SamplerMarch : public SamplerSteps<Value, N> {
   }
 
  private:
-  PacketSamples<Value, N> samples_;
+  PacketSamples<N> samples_;
 };
 
 }  // namespace pellucid

@@ -8,9 +8,9 @@ namespace pellucid {
 
 /// Rays in lanes that take steps of one length: which step each stands at, and which of them lie
 /// where nothing absorbs.
-template <class Value, int N>
-class SamplerSteps : public RaysInBlocks<Value, N> {
-  using Rays = RaysInBlocks<Value, N>;
+template <int N>
+class SamplerSteps : public RaysInBlocks<N> {
+  using Rays = RaysInBlocks<N>;
 
  public:
   using F = Batch<float, N>;
@@ -25,8 +25,7 @@ class SamplerSteps : public RaysInBlocks<Value, N> {
   int steps_at_once;
 
   /// Rays of lanes beyond `count` are not alive.
-  SamplerSteps(const PacketGrid<Value>& grid, const PellucidRay* rays, int count,
-               double step) noexcept
+  SamplerSteps(const PacketGrid& grid, const PellucidRay* rays, int count, double step) noexcept
       : Rays(grid, rays, count), step_(step) {
     double largest = 0;
     for (int l = 0; l < count; ++l) {

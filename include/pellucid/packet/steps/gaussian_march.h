@@ -27,7 +27,7 @@ class GaussianMarch {
   D at;     ///< world length from the entry into the grid
 
   /// Lanes have no rays yet.
-  GaussianMarch(const PacketGrid<void>& grid, const MultichannelGrid& fields,
+  GaussianMarch(const PacketGrid& grid, const MultichannelGrid& fields,
                 const SteppedMixture& mixture, const PrimitiveSet* primitives,
                 const BlockVariation* variation, const float* waves) noexcept
       : grid_(grid),
@@ -44,7 +44,7 @@ class GaussianMarch {
 
   /// Gives the lanes the rays of theirs; `rays` has one for each lane, also of those that go on.
   void begin(M lanes, const PellucidRay* rays) noexcept {
-    rays_ = RaysInBlocks<void, N>(grid_, rays, N);
+    rays_ = RaysInBlocks<N>(grid_, rays, N);
     samples_.set_direction(rays_.direction());
     fastest_ = F(1e-30f);
     for (int a = 0; a < 3; ++a) {
@@ -338,13 +338,13 @@ class GaussianMarch {
     }
   }
 
-  const PacketGrid<void>& grid_;
+  const PacketGrid& grid_;
   const MultichannelGrid& fields_;
   const SteppedMixture& mixture_;
   const PrimitiveSet* primitives_;
   const std::int32_t* variation_;
   const float* waves_;  ///< of blocks; null: nothing is noted
-  RaysInBlocks<void, N> rays_;
+  RaysInBlocks<N> rays_;
   MultichannelSamples<N> samples_;
   F direction_[3];            ///< cells by world length
   F fastest_;                 ///< the same along the axis on which it is the most

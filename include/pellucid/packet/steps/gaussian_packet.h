@@ -23,7 +23,7 @@ class GaussianPacket {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
-  GaussianPacket(const PellucidGaussianPacketJob& job, const PacketGrid<void>& grid) noexcept
+  GaussianPacket(const PellucidGaussianPacketJob& job, const PacketGrid& grid) noexcept
       : job_(job),
         rays_(job.grid_and_rays),
         march_(grid, *static_cast<const MultichannelGrid*>(job.grid),

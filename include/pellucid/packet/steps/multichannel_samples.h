@@ -14,7 +14,7 @@ class MultichannelSamples {
   using F = Batch<float, N>;
   using D = Batch<double, N>;
 
-  MultichannelSamples(const MultichannelGrid& fields, const PacketGrid<void>& grid) noexcept
+  MultichannelSamples(const MultichannelGrid& fields, const PacketGrid& grid) noexcept
       : fields_(fields), places_(grid) {}
 
   /// Cells by world length.

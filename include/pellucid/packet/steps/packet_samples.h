@@ -7,13 +7,13 @@
 namespace pellucid {
 
 /// The data at places of rays in lanes, found as those (sample_places.h).
-template <class Value, int N>
+template <int N>
 class PacketSamples {
  public:
   using F = Batch<float, N>;
   using D = Batch<double, N>;
 
-  explicit PacketSamples(const PacketGrid<Value>& grid) noexcept : grid_(grid), places_(grid) {}
+  explicit PacketSamples(const PacketGrid& grid) noexcept : grid_(grid), places_(grid) {}
 
   /// Cells by world length.
   void set_direction(const D* direction) noexcept { places_.set_direction(direction); }
@@ -22,7 +22,10 @@ class PacketSamples {
   void anchor(const D* at) noexcept {
     std::ptrdiff_t value[N];
     places_.anchor(at, value);
-    for (int l = 0; l < N; ++l) base_[l] = grid_.data + value[l];
+    with_value_type(grid_.type, [&](auto datum) noexcept {
+      const auto* const data = static_cast<const decltype(datum)*>(grid_.data);
+      for (int l = 0; l < N; ++l) base_[l] = data + value[l];
+    });
   }
 
   /// The data at K world lengths from the anchor; NaN in vacuum. All addresses first: what one
@@ -32,9 +35,14 @@ class PacketSamples {
     Vec3<F> local[K];
     std::int32_t on[K][N];
     find<K>(offset, on, local);
-    for (int k = 0; k < K; ++k) {
-      value[k] = load_trilinear<Value, N>(base_, on[k], places_.row, places_.slice, local[k]);
-    }
+    with_value_type(grid_.type, [&](auto datum) noexcept {
+      using Value = decltype(datum);
+      const Value* base[N];
+      for (int l = 0; l < N; ++l) base[l] = static_cast<const Value*>(base_[l]);
+      for (int k = 0; k < K; ++k) {
+        value[k] = load_trilinear<Value, N>(base, on[k], places_.row, places_.slice, local[k]);
+      }
+    });
   }
 
   /// Has the data at K world lengths from the anchor, which are wanted soon, loaded into the cache:
@@ -45,12 +53,14 @@ class PacketSamples {
     std::int32_t on[K][N];
     find<K>(offset, on, local);
     const std::ptrdiff_t rows[4] = {0, places_.row, places_.slice, places_.slice + places_.row};
-    for (int k = 0; k < K; ++k) {
-      for (int l = 0; l < N; ++l) {
-        const Value* at = base_[l] + on[k][l];
-        for (const std::ptrdiff_t row : rows) __builtin_prefetch(at + row);
+    with_value_type(grid_.type, [&](auto datum) noexcept {
+      for (int k = 0; k < K; ++k) {
+        for (int l = 0; l < N; ++l) {
+          const auto* const at = static_cast<const decltype(datum)*>(base_[l]) + on[k][l];
+          for (const std::ptrdiff_t row : rows) __builtin_prefetch(at + row);
+        }
       }
-    }
+    });
   }
 
  private:
@@ -62,9 +72,9 @@ class PacketSamples {
     asm("" : "+m"(on));
   }
 
-  const PacketGrid<Value>& grid_;
+  const PacketGrid& grid_;
   SamplePlaces<N> places_;
-  const Value* base_[N];  ///< the anchor's cell
+  const void* base_[N];  ///< the anchor's cell
 };
 
 }  // namespace pellucid

@@ -17,8 +17,7 @@ class SamplePlaces {
   using D = Batch<double, N>;
   using I = Batch<std::int32_t, N>;
 
-  template <class Value>
-  explicit SamplePlaces(const PacketGrid<Value>& grid) noexcept : row(grid.row), slice(grid.slice) {
+  explicit SamplePlaces(const PacketGrid& grid) noexcept : row(grid.row), slice(grid.slice) {
     for (int a = 0; a < 3; ++a) {
       padding_[a] = grid.padding[a];
       last_[a] = grid.values[a] - 1;

@@ -43,7 +43,7 @@ struct StepLengths {
 /// difference of two rules as well. So of a few lengths that is taken for which
 /// simpson_error_mean_square() is least, and where a stretch ends it is done in two parts if need
 /// be.
-template <class Value, int N>
+template <int N>
 class SmoothMarch {
  public:
   using F = Batch<float, N>;
@@ -55,9 +55,8 @@ class SmoothMarch {
   D at, end;         ///< of it: world length from the entry into the grid
 
   /// `lengths` is of this march alone while it lasts.
-  SmoothMarch(const PellucidPacketJob& job, const PacketGrid<Value>& grid,
-              const double (&origin)[3][N], const double (&direction)[3][N],
-              StepLengths<N>& lengths) noexcept
+  SmoothMarch(const PellucidPacketJob& job, const PacketGrid& grid, const double (&origin)[3][N],
+              const double (&direction)[3][N], StepLengths<N>& lengths) noexcept
       : transfer_(*static_cast<const SamplerTransfer*>(job.samples)),
         smooth_(*static_cast<const SmoothBlocks*>(job.smooth)),
         grid_(grid),
@@ -323,8 +322,8 @@ class SmoothMarch {
 
   const SamplerTransfer& transfer_;
   const SmoothBlocks& smooth_;
-  const PacketGrid<Value>& grid_;
-  PacketSamples<Value, N> samples_;
+  const PacketGrid& grid_;
+  PacketSamples<N> samples_;
   D origin_[3], direction_[3];
   F direction_in_float_[3], cells_per_length_;
   StepLengths<N>& lengths_;
