@@ -23,9 +23,9 @@ Command add_left_out(CommandLine& app, const char* name) {
 
 template <std::size_t number>
 Command add_left_out(CommandLine& app) {
-  static constexpr const char* names[] = {"view",    "info",     "histogram", "suggest",
-                                          "convert", "evaluate", "compare",   "presets",
-                                          "transfer-function"};
+  static constexpr const char* names[] = {"view",    "info",    "histogram",
+                                          "suggest", "convert", "evaluate",
+                                          "compare", "presets", "transfer-function"};
   return add_left_out(app, names[number]);
 }
 

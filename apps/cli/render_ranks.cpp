@@ -216,8 +216,7 @@ class RankRun {
 }  // namespace
 
 bool is_rank(int argc, char** argv) {
-  return is_under_mpi() &&
-         std::find(argv, argv + argc, std::string_view("--ranks")) != argv + argc;
+  return is_under_mpi() && std::find(argv, argv + argc, std::string_view("--ranks")) != argv + argc;
 }
 
 int fail_on_ranks(const std::string& wrong_use) {

@@ -26,8 +26,8 @@ struct SingleRays {
   bool depth;                               ///< whether the depth of half opacity is asked for
 };
 
-/// Returns whether this build follows single rays. Without, a layer that does not suit packets takes
-/// the general path.
+/// Returns whether this build follows single rays. Without, a layer that does not suit packets
+/// takes the general path.
 bool has_single_rays() noexcept;
 
 /// Follows rays in grid coordinates one by one: where packets do not suit them. After a request to
