@@ -80,8 +80,8 @@ class FirstPicture(unittest.TestCase):
     def test_light_and_surfaces_take_the_general_path(self):
         for arguments in (("--shading", "on"), ("--iso", "0.5")):
             with self.subTest(arguments=arguments):
-                self.assertGreater(
-                    len(self.picture(FIRST, "builtin:shells:20", *arguments, "--size", "32x32")), 80)
+                picture = self.picture(FIRST, "builtin:shells:20", *arguments, "--size", "32x32")
+                self.assertGreater(len(picture), 80)
 
     def test_commands_left_out(self):
         result = self.run_program(WHOLE, "--help").stdout.decode()
