@@ -5,6 +5,7 @@
   due_checks.py due [NAME]      prints the checks whose files differ from those that passed; with a
                                 name, ends with 0 if that one is due and with 1 if it is not
   due_checks.py left-out        prints a regular expression of ctest names that are not due
+  due_checks.py due-tests       prints one of those that are
   due_checks.py passed NAME     notes in .ci/passed that this one passed for the files as they are
   due_checks.py note RESULTS    the same for every check whose tests all ran and passed, by the file
                                 that ctest --output-junit wrote
@@ -111,7 +112,7 @@ def read_passed(root):
 
 def write_passed(root, passed):
     head = ("# Checks of .ci/checks and the hash of the files for which they passed. Written by\n"
-            "# `scripts/check release` alone (tools/due_checks.py).\n")
+            "# `scripts/check release` and `scripts/check due` (tools/due_checks.py).\n")
     part = root / ".ci/passed.part"
     part.write_text(head + "".join(f"{name} {passed[name]}\n" for name in sorted(passed)))
     part.replace(root / ".ci/passed")
@@ -153,7 +154,7 @@ def passed_in(results):
 def run(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--root", type=Path, default=REPOSITORY)
-    parser.add_argument("command", choices=["due", "left-out", "passed", "note"])
+    parser.add_argument("command", choices=["due", "left-out", "due-tests", "passed", "note"])
     parser.add_argument("name", nargs="?")
     arguments = parser.parse_args(arguments)
     root, name = arguments.root, arguments.name
@@ -167,9 +168,10 @@ def run(arguments):
         note_passed(root, lambda check: check.name == name)
         return 0
     late, rest = due(root)
-    if arguments.command == "left-out":
+    if arguments.command in ("left-out", "due-tests"):
         # Without parentheses: CMake takes nine of them.
-        print("|".join(check.tests for check in rest if check.tests))
+        print("|".join(check.tests for check in (late if arguments.command == "due-tests" else rest)
+                       if check.tests))
     elif name:
         return 0 if name in {check.name for check in late} else 1
     else:

@@ -69,6 +69,8 @@ class DueChecks(unittest.TestCase):
     def test_everything_is_due_at_first(self):
         self.assertEqual(self.due(), ALL - {"page.no"})
         self.assertEqual(self.run_tool("left-out")[1], "\n")
+        self.pass_all()
+        self.assertEqual(self.run_tool("due-tests")[1], "\n")
 
     def test_what_changed_is_due(self):
         pages = {"page.some-page", "page.other"}
@@ -93,10 +95,12 @@ class DueChecks(unittest.TestCase):
         self.pass_all()
         self.write("docs/other.md", "new")
         left_out = re.compile(self.run_tool("left-out")[1].strip())
+        due = re.compile(self.run_tool("due-tests")[1].strip())
         for name, is_left_out in (("one.a", True), ("page.some-page", True), ("page.other", False),
                                   ("none.a", False), ("bone.a", False), ("page.some-page2", False),
                                   ("page.somex-page", False)):
             self.assertEqual(bool(left_out.search(name)), is_left_out, name)
+            self.assertEqual(bool(due.search(name)), name == "page.other", name)
 
     def test_a_script_asks_for_itself(self):
         self.assertEqual(self.status("due", "script"), 0)
