@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string_view>
 
 #include "output.h"
 #include "parse.h"
@@ -105,6 +107,21 @@ CLI::Option* add_text(CLI::App& app, const std::string& names, Value& value,
   });
 }
 
+/// Returns the arguments behind the name of the program, the last one first, as CLI11 takes them,
+/// with --solution for --q, which later versions than Debian 12 has take for -q.
+std::vector<std::string> arguments_of(int argc, char** argv) {
+  constexpr std::string_view name = "--q";
+  std::vector<std::string> arguments(argv + std::min(1, argc), argv + argc);
+  for (std::string& argument : arguments) {
+    if (argument == "--") break;
+    if (argument == name || argument.starts_with("--q=")) {
+      argument.replace(0, name.size(), "--solution");
+    }
+  }
+  std::ranges::reverse(arguments);
+  return arguments;
+}
+
 }  // namespace
 
 CommandLine::CommandLine(const std::string& description, const std::string& name)
@@ -176,7 +193,7 @@ bool CommandLine::parsed() const {
 bool CommandLine::parse(int argc, char** argv, const std::string& version) {
   app_->set_version_flag("--version", version, "Print the version and exit");
   try {
-    app_->parse(argc, argv);
+    app_->parse(arguments_of(argc, argv));
   } catch (const CLI::CallForHelp&) {
     print_text(app_->help());
     return false;

@@ -52,7 +52,7 @@ void check_arguments(const ConvertArguments& arguments) {
                     arguments.output, writable_volume_extensions()));
   }
   const NamedFile outputs[] = {{"--output", arguments.output}};
-  const NamedFile inputs[] = {{"INPUT", arguments.input}, {"--q", arguments.q}};
+  const NamedFile inputs[] = {{"INPUT", arguments.input}, {"--solution", arguments.q}};
   refuse_overwriting(outputs, inputs);
   if (arguments.is_mesh()) {
     arguments.volume.refuse("meshes");
@@ -195,7 +195,7 @@ Command add_convert(CommandLine& app) {
       .add_option("--time", arguments->time,
                   "Read the step nearest to this time. Default: the first of a mesh")
       ->option_text("T");
-  command.add_option("--q", arguments->q, "PLOT3D solution; INPUT is then a PLOT3D grid")
+  command.add_option("--solution", arguments->q, "PLOT3D solution; INPUT is then a PLOT3D grid")
       ->option_text("FILE");
   command.add_flag("--json", arguments->json, "Print a report of what was written as JSON");
   command.add_flag("-q,--quiet", arguments->quiet, "Print no notes, only errors");
@@ -216,7 +216,7 @@ Command add_convert(CommandLine& app) {
       "  pellucid convert head.raw --dimensions 256,256,113 --type u16 -o head.nii.gz\n"
       "  pellucid convert brain.nii.gz -o brain.vtu\n"
       "  pellucid convert can.ex2 -o can.vtu --time 0.002\n"
-      "  pellucid convert bluntfin.xyz --q bluntfin.q -o bluntfin.vtu");
+      "  pellucid convert bluntfin.xyz --solution bluntfin.q -o bluntfin.vtu");
   return {&command, [arguments] { return run_convert(*arguments); }};
 }
 

@@ -29,7 +29,7 @@ void MeshOptions::add_to(CommandLine& command, bool with_arrays) {
           .add_option("--time", time,
                       "Read the step nearest to this time. Default: the first of a mesh")
           ->option_text("T"));
-  add(command.add_option("--q", q, "PLOT3D solution; INPUT is then a PLOT3D grid")
+  add(command.add_option("--solution", q, "PLOT3D solution; INPUT is then a PLOT3D grid")
           ->option_text("FILE"));
 }
 
@@ -43,7 +43,8 @@ void MeshOptions::refuse(const std::string& what) const {
 }
 
 void MeshOptions::refuse_q(const std::string& what) const {
-  if (!q.empty()) throw UsageError(fmt::format("--q applies to mesh files, not to {}", what));
+  if (!q.empty())
+    throw UsageError(fmt::format("--solution applies to mesh files, not to {}", what));
 }
 
 std::string mesh_input_help() {
@@ -71,7 +72,7 @@ MeshSource mesh_source(const std::string& input, const MeshOptions& options) {
 }
 
 std::vector<NamedFile> data_files(const MeshSource& source) {
-  return {{"mesh", source.file.string()}, {"--q", source.options.q.string()}};
+  return {{"mesh", source.file.string()}, {"--solution", source.options.q.string()}};
 }
 
 }  // namespace pellucid::cli

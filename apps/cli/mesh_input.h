@@ -22,14 +22,14 @@ struct MeshOptions {
   void add_to(CommandLine& command, bool with_arrays);
   /// Throws UsageError where an option is used, saying that it does not apply to `what`.
   void refuse(const std::string& what) const;
-  /// The same of `--q` alone: volume files have arrays and times too.
+  /// The same of `--solution` alone: volume files have arrays and times too.
   void refuse_q(const std::string& what) const;
 };
 
 /// What INPUT may be besides a volume, for help texts.
 std::string mesh_input_help();
 
-/// Whether INPUT is a mesh: by --q, or by the file.
+/// Whether INPUT is a mesh: by --solution, or by the file.
 bool is_mesh(const std::string& input, const MeshOptions& options);
 /// Throws UsageError.
 MeshSource mesh_source(const std::string& input, const MeshOptions& options);

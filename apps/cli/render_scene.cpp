@@ -147,7 +147,7 @@ void check_arguments(const RenderArguments& arguments) {
   }
   const std::vector<NamedFile> outputs = output_files(arguments);
   const NamedFile inputs[] = {{"INPUT", arguments.input},
-                              {"--q", arguments.mesh.q},
+                              {"--solution", arguments.mesh.q},
                               {"--tf", arguments.transfer_function},
                               {"--camera", arguments.camera}};
   refuse_overwriting(outputs, inputs);

@@ -77,12 +77,13 @@ class Plot3d(ProgramTest):
         arrays = {array["name"]: array for array in report["arrays"]}
         self.assertEqual(arrays["Density"]["components"][0]["range"], [1, 3])
         self.assertEqual(len(arrays["Momentum"]["components"]), 3)
-        text = self.succeed("info", "grid.bin", "--q", "q.bin")
+        text = self.succeed("info", "grid.bin", "--q=q.bin")
         self.assertRegex(text, r"(?m)^cells +2 hexahedra$")
         self.assertRegex(text, r"Density \(point, f32\), shown by default +1 to 3")
 
     def test_render(self):
-        report = self.report("render", "grid.bin", "--q", "q.bin", "-o", "a.exr", "--size", "16")
+        report = self.report("render", "grid.bin", "--solution", "q.bin", "-o", "a.exr", "--size",
+                             "16")
         self.assertEqual(report["mesh"]["arrays"], [{"array": "Density", "component": None}])
         self.assertIsNone(report["dimensions"])
         self.assertEqual(report["pixels_over"], 0)
