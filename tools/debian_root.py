@@ -155,7 +155,9 @@ class Root:
 
     def command(self, *command, binds=(), folder="/"):
         """What runs a command in a folder of the root, with /proc, /sys and bound folders."""
-        script = ['mount -t proc proc "$0/proc"', 'mount -t sysfs -o ro sysfs "$0/sys"']
+        script = ['mount -t proc proc "$0/proc"', 'mount -t sysfs -o ro sysfs "$0/sys"',
+                  'mkdir -p "$0/dev/pts"',
+                  'mount -t devpts -o newinstance,ptmxmode=0666 devpts "$0/dev/pts"']
         for path, place in binds:
             os.makedirs(self.path(place), exist_ok=True)
             script.append(f"mount --bind {shlex.quote(path)} \"$0\"{shlex.quote(place)}")

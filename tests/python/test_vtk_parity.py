@@ -170,7 +170,7 @@ def test_descending_rectilinear_grids():
 
 @pytest.mark.parametrize("kind", ["vtkCharArray", "vtkSignedCharArray"])
 def test_bytes_with_a_sign(kind):
-    """vtk.util.numpy_support makes the first of numpy's int8."""
+    """vtk.util.numpy_support of 9.1 makes the first of numpy's int8, that of 9.3 the second."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
 
     values = (ball() - 60).round().astype(numpy.int8)
@@ -184,7 +184,7 @@ def test_bytes_with_a_sign(kind):
         made.SetNumberOfTuples(values.size)
         numpy.asarray(memoryview(made))[...] = values.ravel()
         array = made
-    assert array.GetClassName() == kind
+    assert array.GetClassName() in (kind, "vtkTypeInt8Array")
     image.GetPointData().SetScalars(array)
     stage = Stage(image, opacities=((-60, 0), (40, 0.2)), colors=((-60, 0, 0, 1), (40, 1, 1, 0)))
     assert rendered(stage).compare(expected).largest < 2e-4
