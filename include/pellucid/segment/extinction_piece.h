@@ -200,11 +200,11 @@ struct ColorSpread {
 ///
 /// color_error is proved: by (5), range of the colors · opacity · κ(depth) for the weighting by
 /// transparency, plus color_kink_error() if the color has kinks. Neither includes rounding.
-/// `wanted` and `known` are those of color_at().
-template <class F>
+/// `wanted` and `known` are those of color_at(). Transfer: a BinnedTransfer, or several.
+template <class F, class Transfer>
 BoundedSegment<in_float_t<F>> colored_piece(const PieceDepth<F>& piece,
                                             const ColorSpread<in_float_t<F>>& spread,
-                                            const BinnedTransfer& transfer, const mask_t<F>& wanted,
+                                            const Transfer& transfer, const mask_t<F>& wanted,
                                             ColorInterval<F>& known) noexcept {
   using Single = in_float_t<F>;
   BoundedSegment<Single> result;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/error/random_errors.h"
 #include "pellucid/packet/cells/gradient_loads.h"
-#include "pellucid/packet/cells/span_piece.h"
-#include "pellucid/segment/gauss_panel.h"
+#include "pellucid/packet/cells/span_light.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
@@ -27,11 +25,6 @@ Vec3<Batch<float, N>> place_in_world(const PacketGrid& grid, const PacketLight& 
   return result;
 }
 
-/// Returns what the places of place_in_world(), and others along a cell, may be off by.
-inline float place_rounding(const PacketLight& light) noexcept {
-  return 8 * rounding_unit<float> * light.farthest;
-}
-
 /// Returns the directions in the world from which the lanes' rays come, of length 1.
 template <int N>
 Vec3<Batch<float, N>> direction_to_eye(const PacketLight& light,
@@ -46,317 +39,31 @@ Vec3<Batch<float, N>> direction_to_eye(const PacketLight& light,
   return result;
 }
 
-/// What is known of the light on a piece of a span before any node is shaded.
+/// The light of the spans that lanes work on, of cells of a grid.
 template <int N>
-struct LightOfPiece {
-  using F = Batch<float, N>;
-  GradientStretch<F> along;
-  /// Standard deviations of the color by three and by six nodes: error_of_three_nodes() and
-  /// error_of_six_nodes() times the range of the colors, of which four are charged, or six to a
-  /// piece alone and to pieces that are alike (LikeErrors).
-  F by_three, by_six;
-  F color_error;  ///< what the color may be off by beside: tables' kinks and rounding
-  typename LikeErrors<F>::Signs signs;  ///< of the piece, for errors that repeat
-};
-
-/// The light of the spans that lanes work on.
-template <int N>
-class LightLanes {
+class LightLanes : public SpanLight<N> {
  public:
   using F = Batch<float, N>;
-  using D = Batch<double, N>;
   using M = BatchMask<N>;
 
   LightLanes(const PacketGrid& grid, const PacketLight& light, const BlockMarch<N>& rays) noexcept
-      : grid_(grid), light_(light), loads_(grid, light), to_eye_(direction_to_eye(light, rays)) {
-    const Reflection<float>& r = light.reflection;
-    float brightest = r.ambient;
-    for (int i = 0; i < light.lights; ++i) {
-      brightest += (r.diffuse + r.specular) * largest_component(light.light[i].color);
-    }
-    inverse_light_ = brightest > 0 ? 1 / brightest : 0;
-  }
+      : SpanLight<N>(light, direction_to_eye(light, rays)),
+        grid_(grid),
+        light_(light),
+        loads_(grid, light) {}
 
   /// Begins spans. Returns the lanes in which a point light is too near for nodes.
   [[gnu::noinline]] M begin(M lanes, const CellPlaces<N>& places) noexcept {
-    loads_(lanes, places, gradient_, magnitude_);
-    M near(false);
-    if (light_.points > 0) {
-      const Vec3<F> entry = place_in_world(grid_, light_, places.cell, places.entry);
-      for (int c = 0; c < 3; ++c) entry_[c] = select(lanes, entry[c], entry_[c]);
-      length_ = select(lanes, convert<float>(places.length), length_);
-      near = lanes & (distance_to_lights() < F(nearest_light) * length_);
-    }
-    kink_ = select(lanes, next_kink(lanes, F(0)), kink_);
-    if (light_.factor != nullptr) {
-      const F largest = max(abs(magnitude_.hull_min()), abs(magnitude_.hull_max()));
-      const F error = F(32 * rounding_unit<float> + gradient_rounding<float>) * largest;
-      magnitude_error_ = select(lanes, error, magnitude_error_);
-      factor_ = find_extinction(*light_.factor, magnitude_.b[0], lanes, interval_);
-      find_factor_end(lanes, F(0));
-    }
-    return near;
-  }
-
-  bool has_factor() const noexcept { return light_.factor != nullptr; }
-  float largest_factor() const noexcept { return light_.largest_factor; }
-  /// Where the next piece has to end, as a share of the cell: where g·l changes its sign, or g·h if
-  /// highlights have a kink there, or the magnitude comes to a control point of the factor.
-  F kink() const noexcept { return min(kink_, factor_end_); }
-  /// The lanes have gone past this share of their cells.
-  void go_past(M lanes, F to) noexcept {
-    const M past = lanes & (to >= kink_ - F(1e-5f)) & (to < F(1));
-    if (any(past)) kink_ = select(past, next_kink(past, to + F(2e-3f)), kink_);
-    const M ends = lanes & (to >= factor_end_ - F(1e-6f)) & (to < F(1));
-    if (any(ends)) {
-      interval_ += select(ends & factor_crosses_, select(factor_rises_, I(1), I(-1)), I(0));
-      factor_ = load_extinction<F>(*light_.factor, interval_);
-      find_factor_end(ends, to);
-    }
-  }
-
-  /// Makes the extinction of a piece, the share [from, to] of its cell, what the factor makes of
-  /// it: a polynomial of degree 6, whose depth four nodes have. Lanes in which the factor is not
-  /// known well enough have an infinite depth_error.
-  [[gnu::noinline]] void weaken(SpanPiece<float, N>& piece, F from, F to,
-                                const SpanLanes<float, N>& span, F largest_color) noexcept {
-    part_ = restrict_to(magnitude_, from, to);
-    const detail::PanelNodes<4, F> nodes(piece.length, [&](F u) noexcept {
-      return Material<F>{extinction(span, evaluate(piece.parts.front, u), u), {}};
-    });
-    const F largest = max(factor_at(part_.hull_min()), factor_at(part_.hull_max()));
-    // Where a piece ends beside a control point, as much of the next slope is in it.
-    const F off =
-        F(2) * magnitude_error_ * factor_.steepest + F(16 * rounding_unit<float>) * largest;
-    const F unweakened = span.extinction.largest * piece.length;
-    const M known = factor_known_ & (F(2) * magnitude_error_ < F(light_.factor->narrowest));
-    piece.depth_error = select(known, piece.depth_error * (largest + off) + unweakened * off,
-                               F(std::numeric_limits<float>::infinity()));
-    piece.seen.depth = nodes.total;
-    piece.found.segment = segment_of_depth(nodes.total, Rgb<F>{});
-    piece.add_up_rounding(largest_color);
-  }
-
-  /// Returns the gradients on the lanes' cells, seen from their place at u.
-  GradientStretch<F> around(F u) const noexcept {
-    GradientStretch<F> result{{gradient_[0], gradient_[1], gradient_[2]}, {}, F(0), to_eye_};
-    if (light_.points > 0) result.middle = entry_ - to_eye_ * (u * length_);
-    return result;
-  }
-
-  /// Bounds the light on a piece, the share [from, to] of its cell.
-  [[gnu::noinline]] LightOfPiece<N> measure(const SpanPiece<float, N>& piece, F from, F to,
-                                            const BinnedTransfer& transfer) const noexcept {
-    LightOfPiece<N> result;
-    result.along = along(from, to);
-    const Bounds<F> squares = result.along.square();
-    const LitBounds<F> bounds =
-        light_bounds(light_.reflection, light_.light, light_.lights, result.along, squares);
-    // The range of the colors: of the table's within the piece, of light's factors and addends.
-    const F change = min(piece.spread.range, piece.spread.slope * range_of(piece.seen));
-    const F largest = F(transfer.largest_color);
-    const F brightest = largest_component(bounds.upper.factor);
-    const F range = brightest * change +
-                    largest * largest_component(bounds.upper.factor - bounds.lower.factor) +
-                    largest_component(bounds.upper.added - bounds.lower.added);
-    const F flat = F(light_.reflection.flat_square);
-    // The direction to a point light has its distance for a denominator, as the normal |g|.
-    const F turns = (squares.upper + flat) / max(squares.lower + flat, F(smallest_normal<float>)) *
-                    turns_of_distance(result.along);
-    const F one_deviation = F(1.5f / RandomErrors<F>::deviations) * range;
-    const auto deviation = [&](F of_nodes) noexcept {
-      const F& depth = piece.seen.depth;
-      const F deep = select(depth <= F(8), min(F(2) * of_nodes, F(1)), F(1));
-      return one_deviation * select(depth <= F(1), of_nodes, deep);
-    };
-    result.by_three = deviation(error_of_three_nodes(turns, bounds.sharpness));
-    result.by_six = deviation(error_of_six_nodes(turns, bounds.sharpness));
-    result.color_error = brightest * piece.spread.kinks +
-                         color_rounding(light_.reflection, light_.light, light_.lights, squares,
-                                        largest, F(gradient_rounding<float>));
-    if (light_.points > 0) {
-      result.color_error += place_doubt(light_.reflection, light_.light, light_.lights,
-                                        result.along, largest, F(place_rounding(light_)));
-    }
-    // The same for pieces that mirror each other.
-    const F feature[LikeErrors<F>::features] = {
-        F(1) / turns, F(inverse_light_) * (brightest + largest_component(bounds.upper.added)),
-        F(inverse_light_) *
-            (largest_component(bounds.lower.factor) + largest_component(bounds.lower.added)),
-        F(inverse_light_) * range};
-    result.signs = LikeErrors<F>::signs(feature);
-    return result;
-  }
-
-  /// Returns the color of a piece by Nodes Gauss nodes.
-  template <int Nodes>
-  [[gnu::noinline]] Rgb<F> color(const LightOfPiece<N>& of, const SpanPiece<float, N>& piece,
-                                 const SpanLanes<float, N>& span, M lanes,
-                                 const BinnedTransfer& transfer,
-                                 ColorInterval<F>& known) const noexcept {
-    const CubicBernstein<F>& data = piece.parts.front;
-    const detail::PanelNodes<Nodes, F> nodes(piece.length, [&](F u) noexcept {
-      const F value = evaluate(data, u);
-      const Rgb<F> unlit = color_at(
-          transfer, clamp(value, piece.seen.color_lower, piece.seen.color_upper), lanes, known);
-      const Lit<F> lit = light_up(light_.reflection, light_.light, light_.lights, of.along.at(u),
-                                  of.along.position(u), to_eye_);
-      return Material<F>{extinction(span, value, u), lit.apply(unlit)};
-    });
-    return detail::panel_color(nodes);
+    loads_(lanes, places, this->gradient_, this->magnitude_);
+    Vec3<F> entry{F(0), F(0), F(0)};
+    if (light_.points > 0) entry = place_in_world(grid_, light_, places.cell, places.entry);
+    return this->begin_loaded(lanes, entry, convert<float>(places.length));
   }
 
  private:
-  using Kind = LightSource<float>::Kind;
-  using I = Batch<std::int32_t, N>;
-  /// Least distance of a point light, in lengths of the way through the cell.
-  static constexpr float nearest_light = 8;
-
-  /// Returns the extinction at u of a piece, where the data have this value.
-  F extinction(const SpanLanes<float, N>& span, F value, F u) const noexcept {
-    const ExtinctionInterval<F>& interval = span.extinction;
-    const F result = max(interval.at_lower + interval.slope * (value - interval.lower), F(0));
-    return light_.factor == nullptr ? result : result * factor_at(evaluate(part_, u));
-  }
-  F factor_at(F magnitude) const noexcept {
-    const F inside = clamp(magnitude, factor_.lower, factor_.upper);
-    return max(factor_.at_lower + factor_.slope * (inside - factor_.lower), F(0));
-  }
-  /// Finds where the magnitude leaves its interval of the factor, or turns, behind `from`.
-  [[gnu::noinline]] void find_factor_end(M lanes, F from) noexcept {
-    const PieceEnd<F> end = piece_end(restrict_to(magnitude_, min(from, F(1)), F(1)), factor_.lower,
-                                      factor_.upper, magnitude_error_, lanes);
-    // Every piece goes on for a little, so that none is empty.
-    const F place = from + max((F(1) - from) * end.place, F(2e-6f));
-    factor_end_ = select(lanes, select(end.place < F(1), place, F(2)), factor_end_);
-    factor_crosses_ = (factor_crosses_ & !lanes) | (lanes & end.crosses);
-    factor_rises_ = (factor_rises_ & !lanes) | (lanes & end.rising);
-    factor_known_ = (factor_known_ & !lanes) | (lanes & end.found);
-  }
-
-  /// The gradients on the share [from, to] of the lanes' cells.
-  GradientStretch<F> along(F from, F to) const noexcept {
-    GradientStretch<F> result{
-        {restrict_to(gradient_[0], from, to), restrict_to(gradient_[1], from, to),
-         restrict_to(gradient_[2], from, to)},
-        {},
-        F(0),
-        to_eye_};
-    if (light_.points > 0) {
-      result.middle = entry_ - to_eye_ * (F(0.5f) * (from + to) * length_);
-      result.half_length = F(0.5f) * (to - from) * length_;
-    }
-    return result;
-  }
-
-  static Vec3<F> place_of(const LightSource<float>& light) noexcept {
-    return {F(light.place.x), F(light.place.y), F(light.place.z)};
-  }
-  /// From the lanes' cells to the nearest point light.
-  F distance_to_lights() const noexcept {
-    F nearest(std::numeric_limits<float>::infinity());
-    for (int i = 0; i < light_.lights; ++i) {
-      if (light_.light[i].kind != Kind::point) continue;
-      nearest = min(nearest, length(place_of(light_.light[i]) - entry_) - length_);
-    }
-    return nearest;
-  }
-  /// The largest square of the distance of a point light over the smallest one, on a stretch.
-  F turns_of_distance(const GradientStretch<F>& along) const noexcept {
-    F most(1);
-    for (int i = 0; i < light_.lights; ++i) {
-      if (light_.light[i].kind != Kind::point) continue;
-      const F away = length(place_of(light_.light[i]) - along.middle);
-      const F ratio =
-          (away + along.half_length) / max(away - along.half_length, F(smallest_normal<float>));
-      most = max(most, ratio * ratio);
-    }
-    return most;
-  }
-
-  /// Where g·l of any light, or g·h, changes its sign first behind `from`; 2: nowhere.
-  [[gnu::noinline]] F next_kink(M lanes, F from) const noexcept {
-    F nearest(2);
-    from = min(from, F(1));
-    const GradientStretch<F> along = this->along(from, F(1));
-    const auto put = [&](M ends, F place) noexcept {
-      nearest = select(ends, min(nearest, from + (F(1) - from) * place), nearest);
-    };
-    const auto look_at = [&](const CubicBernstein<F>& f, auto&& moved) noexcept {
-      const F size = max(abs(f.hull_min()), abs(f.hull_max()));
-      const M straddles = lanes & (f.hull_min() < F(0)) & (f.hull_max() > F(0));
-      if (none(straddles)) return;
-      const M rises = f.b[0] < F(0);
-      const F far = F(4) * size;
-      const PieceEnd<F> end = piece_end(f, select(rises, -far, F(0)), select(rises, F(0), far),
-                                        F(1e-6f) * size, straddles);
-      // An extremum ends a piece too, and the next one begins there.
-      put(straddles & (end.place < F(1)), moved(end));
-    };
-    const auto here = [](const PieceEnd<F>& end) noexcept { return end.place; };
-    const bool highlights = has_kink_in_highlight(light_.reflection);
-    for (int i = 0; i < light_.lights; ++i) {
-      if (light_.light[i].kind == Kind::point) {
-        look_at_point(along, light_.light[i], look_at);
-        continue;
-      }
-      const LightDirections<F> to = directions(light_.light[i], Vec3<F>{}, to_eye_);
-      look_at(along.along(to.light), here);
-      if (highlights && light_.light[i].kind != Kind::head) look_at(along.along(to.half), here);
-    }
-    return nearest;
-  }
-
-  /// Looks at g·p of a point light, p = P - x: a polynomial of degree 4. The cubic that has, of its
-  /// Bernstein coefficients b, b_0, (4 b_1 - b_0) / 3, (4 b_3 - b_4) / 3 and b_4 differs from it by
-  /// u² (1 - u)² times their fourth difference. That is small where the light is far away. Newton's
-  /// steps go from the cubic's zero to that of g·p.
-  template <class LookAt>
-  void look_at_point(const GradientStretch<F>& along, const LightSource<float>& light,
-                     const LookAt& look_at) const noexcept {
-    const Vec3<F> to_middle = place_of(light) - along.middle;
-    const Vec3<F> half = along.to_eye * along.half_length;
-    const CubicBernstein<F> first = along.along(to_middle - half);
-    const CubicBernstein<F> last = along.along(to_middle + half);
-    const F b[5] = {first.b[0], F(0.75f) * first.b[1] + F(0.25f) * last.b[0],
-                    F(0.5f) * (first.b[2] + last.b[1]),
-                    F(0.25f) * first.b[3] + F(0.75f) * last.b[2], last.b[3]};
-    constexpr float third = 1.0f / 3;
-    look_at(
-        CubicBernstein<F>{
-            {b[0], F(third) * (F(4) * b[1] - b[0]), F(third) * (F(4) * b[3] - b[4]), b[4]}},
-        [&](const PieceEnd<F>& end) noexcept {
-          F at = end.place;
-          for (int step = 0; step < 2; ++step) {
-            const CubicBernstein<F> low{{b[0], b[1], b[2], b[3]}}, high{{b[1], b[2], b[3], b[4]}};
-            const F lower = evaluate(low, at), upper = evaluate(high, at);
-            const F value = interpolate(lower, upper, at), slope = F(4) * (upper - lower);
-            const F move = value / select(slope == F(0), F(1), slope);
-            const M steps = end.crosses & (abs(move) <= F(0.125f));
-            at = select(steps, clamp(at - move, F(0), F(1)), at);
-          }
-          return at;
-        });
-  }
-
   const PacketGrid& grid_;
   const PacketLight& light_;
   GradientLoads<N> loads_;
-  Vec3<F> to_eye_;
-  float inverse_light_;  ///< 1 / the brightest factor of a color
-  CubicBernstein<F> gradient_[3];
-  // Of the lanes' cells, if there is a factor of the magnitude:
-  CubicBernstein<F> magnitude_;
-  F magnitude_error_{0};          ///< what it may be off by
-  I interval_{0};                 ///< of the factor, in which the next piece is
-  ExtinctionInterval<F> factor_;  ///< that interval
-  F factor_end_{2};               ///< where the next piece has to end for it; 2: nowhere
-  M factor_crosses_{false}, factor_rises_{false}, factor_known_{true};
-  CubicBernstein<F> part_;  ///< the magnitude on the piece that weaken() was given last
-  // Of the lanes' cells, if there are point lights:
-  Vec3<F> entry_{F(0), F(0), F(0)};  ///< in the world, from the middle of the grid
-  F length_{1};                      ///< of the way through them, world length
-  F kink_{2};
 };
 
 }  // namespace pellucid

@@ -46,6 +46,26 @@ struct SpanPiece {
   }
 };
 
+/// Finds the intervals of values in these lanes.
+template <class F>
+void locate(const BinnedTransfer& transfer, const mask_t<F>& lanes, F value, index_t<F>& interval,
+            ExtinctionInterval<F>& extinction) noexcept {
+  extinction = find_extinction(transfer, value, lanes, interval);
+}
+/// Loads these intervals in these lanes.
+template <class F>
+void reload(const BinnedTransfer& transfer, const mask_t<F>& /*lanes*/, index_t<F> interval,
+            ExtinctionInterval<F>& extinction) noexcept {
+  extinction = load_extinction<F>(transfer, interval);
+}
+
+/// As color_kink_error(), in these lanes.
+template <class F>
+in_float_t<F> kink_error(const BinnedTransfer& transfer, const mask_t<F>& /*lanes*/, F lower,
+                         F upper) noexcept {
+  return color_kink_error(transfer, lower, upper);
+}
+
 /// What is left of the spans that lanes work on: of a cell, the part [from, 1]. T: float or double.
 template <class T, int N>
 struct SpanLanes {
@@ -70,8 +90,9 @@ struct SpanLanes {
   }
 
   /// The lanes' next piece was taken; where it was halved, its other half comes next.
+  template <class Transfer>
   void go_past(BatchMask<N> lanes, const SpanPiece<T, N>& piece,
-               const BinnedTransfer& transfer) noexcept {
+               const Transfer& transfer) noexcept {
     using I = Batch<std::int32_t, N>;
     const F place = piece.place, left = F(1) - place;
     for (int k = 0; k < 4; ++k) data.b[k] = select(lanes, piece.parts.back.b[k], data.b[k]);
@@ -80,7 +101,7 @@ struct SpanLanes {
     cap = select(lanes, select(piece.capped & (place < left), place / left, F(1)), cap);
     for (BatchMask<N> crossed = lanes & piece.crosses; any(crossed);) {
       interval += select(crossed, select(piece.end.rising, I(1), I(-1)), I(0));
-      extinction = load_extinction<F>(transfer, interval);
+      reload(transfer, crossed, interval, extinction);
       // What comes near a jump does not go in float. Past one, at once.
       if constexpr (is_single<F>) return;
       crossed = crossed & (extinction.upper <= extinction.lower);
@@ -130,31 +151,36 @@ Batch<float, N> extinction_across_jumps(const SpanLanes<double, N>& span,
   return select(beside, size * convert<float>(share), F(0));
 }
 
-/// Integrates the next piece of the lanes' spans. `position_error`: how far a span's ends may be
-/// from where they are thought to be, world length. Colors are floats, of values in T.
-template <class T, int N>
-SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer,
-                           BatchMask<N> lanes, Batch<float, N> position_error,
-                           Batch<float, N> largest_color) noexcept {
+/// Finds where the next piece of the lanes' spans ends. Transfer: a BinnedTransfer, or several.
+template <class T, int N, class Transfer>
+void begin_piece(SpanLanes<T, N>& span, const Transfer& transfer, BatchMask<N> lanes,
+                 SpanPiece<T, N>& piece) noexcept {
   using F = Batch<T, N>;
-  using Single = Batch<float, N>;
   using M = BatchMask<N>;
   const M lost =
       lanes & !span.located &
       ((span.data.b[0] < span.extinction.lower) | (span.data.b[0] >= span.extinction.upper));
-  if (any(lost)) {
-    span.extinction = find_extinction(transfer, span.data.b[0], lost, span.interval);
-  }
-  const ExtinctionInterval<F>& interval = span.extinction;
+  if (any(lost)) locate(transfer, lost, span.data.b[0], span.interval, span.extinction);
   span.located = span.located | lanes;
   span.pieces += select(lanes, Batch<std::int32_t, N>(1), Batch<std::int32_t, N>(0));
-
-  SpanPiece<T, N> piece;
   const F close = F(0.25f) * span.rounding;
-  piece.end = piece_end(span.data, interval.lower, interval.upper, close, lanes);
+  piece.end = piece_end(span.data, span.extinction.lower, span.extinction.upper, close, lanes);
   piece.capped = span.cap < piece.end.place;
   piece.place = min(piece.end.place, span.cap);
   piece.crosses = piece.end.crosses & !piece.capped;
+}
+
+/// Integrates the piece that begin_piece() has found. `position_error`: how far a span's ends may
+/// be from where they are thought to be, world length. Colors are floats, of values in T.
+template <class T, int N, class Transfer>
+void finish_piece(SpanLanes<T, N>& span, const Transfer& transfer, BatchMask<N> lanes,
+                  Batch<float, N> position_error, Batch<float, N> largest_color,
+                  SpanPiece<T, N>& piece) noexcept {
+  using F = Batch<T, N>;
+  using Single = Batch<float, N>;
+  using M = BatchMask<N>;
+  const ExtinctionInterval<F>& interval = span.extinction;
+  const F close = F(0.25f) * span.rounding;
   piece.parts = {span.data, span.data};
   const M cuts = lanes & (piece.place < F(1));
   if (any(cuts)) {
@@ -172,7 +198,7 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
   piece.length = span.length * piece.place;
   piece.seen = piece_depth(f, interval, piece.length);
   piece.spread = {convert<float>(interval.color_range), convert<float>(interval.color_slope),
-                  color_kink_error(transfer, piece.seen.lower, piece.seen.upper)};
+                  kink_error(transfer, lanes, piece.seen.lower, piece.seen.upper)};
   const F value_error = span.rounding + close;
   F shown_error = value_error;
   if constexpr (!is_single<F>) {
@@ -211,6 +237,16 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
     piece.rounding +=
         Single(2) * largest_color * min(convert<float>(piece.length) * across, Single(1));
   }
+}
+
+/// Integrates the next piece of the lanes' spans: begin_piece() and finish_piece().
+template <class T, int N>
+SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer,
+                           BatchMask<N> lanes, Batch<float, N> position_error,
+                           Batch<float, N> largest_color) noexcept {
+  SpanPiece<T, N> piece;
+  begin_piece(span, transfer, lanes, piece);
+  finish_piece(span, transfer, lanes, position_error, largest_color, piece);
   return piece;
 }
 
