@@ -4,22 +4,24 @@
 // (PELLUCID_BUILD_SETS). packet_instruction_set() never chooses such a set.
 #include "pellucid/packet/gaussian_packet_interface.h"
 #include "pellucid/packet/interface.h"
+#include "pellucid/packet/layered_interface.h"
 #include "pellucid/packet/mesh_interface.h"
 #include "pellucid/packet/multivariate_sampler_interface.h"
 #include "pellucid/packet/sampler_interface.h"
 #include "pellucid/simd/instruction_set.h"
 
-#define PELLUCID_ABSENT(function, Job)                   \
-  extern "C" void PELLUCID_ENTRY(function)(const Job*) { \
-    __builtin_trap();                                    \
+#define PELLUCID_ABSENT(function, Job)             \
+  extern "C" void PELLUCID_ENTRY(function)(Job*) { \
+    __builtin_trap();                              \
   }
 
-PELLUCID_ABSENT(pellucid_integrate_packets, PellucidPacketJob)
-PELLUCID_ABSENT(pellucid_integrate_lit_packets, PellucidPacketJob)
-PELLUCID_ABSENT(pellucid_meet_surfaces, PellucidPacketJob)
-PELLUCID_ABSENT(pellucid_sample_packets, PellucidSamplerJob)
-PELLUCID_ABSENT(pellucid_integrate_gaussian_packets, PellucidGaussianPacketJob)
-PELLUCID_ABSENT(pellucid_integrate_multivariate_cells, PellucidGaussianPacketJob)
-PELLUCID_ABSENT(pellucid_sample_multivariate, PellucidMultivariateSamplerJob)
-PELLUCID_ABSENT(pellucid_integrate_mesh, PellucidMeshJob)
-PELLUCID_ABSENT(pellucid_integrate_multivariate_mesh, PellucidMeshJob)
+PELLUCID_ABSENT(pellucid_integrate_packets, const PellucidPacketJob)
+PELLUCID_ABSENT(pellucid_integrate_lit_packets, const PellucidPacketJob)
+PELLUCID_ABSENT(pellucid_meet_surfaces, const PellucidPacketJob)
+PELLUCID_ABSENT(pellucid_sample_packets, const PellucidSamplerJob)
+PELLUCID_ABSENT(pellucid_integrate_gaussian_packets, const PellucidGaussianPacketJob)
+PELLUCID_ABSENT(pellucid_integrate_multivariate_cells, const PellucidGaussianPacketJob)
+PELLUCID_ABSENT(pellucid_sample_multivariate, const PellucidMultivariateSamplerJob)
+PELLUCID_ABSENT(pellucid_integrate_mesh, const PellucidMeshJob)
+PELLUCID_ABSENT(pellucid_integrate_multivariate_mesh, const PellucidMeshJob)
+PELLUCID_ABSENT(pellucid_integrate_layers, PellucidLayeredJob)

@@ -10,6 +10,7 @@
 #include "grid/grid_light.h"
 #include "grid/packet_surfaces.h"
 #include "layers/layer_stream.h"
+#include "layers/layered_packets.h"
 #include "projection/projected_tracer.h"
 #include "ray_tracer.h"
 #include "sample/packet_sampler.h"
@@ -37,6 +38,18 @@ std::unique_ptr<const GridLight> GridLight::make(const Layer&, const std::vector
 void GridLight::integrate(const StructuredWalk<double>::Step&, const Ray<double>&,
                           const PellucidCell&, const TransferTables&, PellucidCellResult&) const {
   throw left_out("what integrates lit cells");
+}
+
+std::unique_ptr<const LayeredPackets> LayeredPackets::make(const std::vector<ClippedLayer>&,
+                                                           const std::vector<LightSource<double>>&,
+                                                           const RayTolerance&, bool) {
+  return nullptr;
+}
+
+std::vector<RayResult> LayeredPackets::integrate(const std::vector<RayPart>&,
+                                                 const std::vector<double>&,
+                                                 const std::stop_token&) const {
+  throw left_out("what follows several layers in packets");
 }
 
 std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task) {

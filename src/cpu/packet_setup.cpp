@@ -64,6 +64,11 @@ double diagonal(const Volume& volume) {
   return std::sqrt(square);
 }
 
+bool fits_single(const Volume& volume) {
+  const std::string_view type = type_name(volume.data());
+  return type != "u32" && type != "i32" && type != "f64";
+}
+
 bool suits_packets(const Volume& volume, double largest_extinction) {
   return is_moderate(largest_value(volume)) && is_moderate(volume.voxel_size()) &&
          largest_extinction <= 1e12 && volume.visit([](const auto& grid) {

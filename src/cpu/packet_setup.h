@@ -32,6 +32,9 @@ inline bool is_moderate(double x) {
   return x >= 1e-12 && x <= 1e12;
 }
 
+/// Whether binary32 holds all values of the data's type.
+bool fits_single(const Volume& volume);
+
 /// Whether packets can go through the volume: uniform, two values along each axis at least, places
 /// near a block that an int can count, and numbers, extinctions among them, whose squares binary32
 /// has.

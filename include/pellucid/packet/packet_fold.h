@@ -52,7 +52,9 @@ class PacketFold {
   PacketFold() = default;
   /// `lengths` of the rays, in world units.
   PacketFold(double tolerance, double largest_extinction, double largest_color, F lengths) noexcept
-      : budget(F(without_kept_back(tolerance)), lengths),
+      : PacketFold(F(static_cast<float>(tolerance)), largest_extinction, largest_color, lengths) {}
+  PacketFold(F tolerance, double largest_extinction, double largest_color, F lengths) noexcept
+      : budget(without_kept_back(tolerance), lengths),
         tolerance_(without_kept_back(tolerance)),
         largest_extinction_(static_cast<float>(largest_extinction)),
         largest_color_(largest_color) {}
@@ -88,8 +90,7 @@ class PacketFold {
   /// Those of the lanes whose rays no longer matter from here on, and did until now. What is
   /// behind is charged to them.
   M cut_off(M lanes) noexcept {
-    const M done =
-        lanes & (!cut_off_) & budget.allows_termination(remainder_bound(), F(tolerance_));
+    const M done = lanes & (!cut_off_) & budget.allows_termination(remainder_bound(), tolerance_);
     cut_off_ = cut_off_ | done;
     return done;
   }
@@ -117,8 +118,8 @@ class PacketFold {
  private:
   /// The share of the tolerance that pays for adding up costs in float: of 16000 segments.
   static constexpr double kept_back = 0x1p-9;
-  static float without_kept_back(double tolerance) noexcept {
-    return static_cast<float>(tolerance * (1 - kept_back));
+  static F without_kept_back(F tolerance) noexcept {
+    return tolerance * F(static_cast<float>(1 - kept_back));
   }
 
   /// A bound on what lies behind the last segment, as little as light can come from there.
@@ -128,7 +129,7 @@ class PacketFold {
   }
 
   FrontToBackCompositor<D> fold_;
-  float tolerance_ = 0;  ///< that the budget began with
+  F tolerance_{0};  ///< that the budget began with
   float largest_extinction_ = 0;
   double largest_color_ = 0;
   M cut_off_{false};

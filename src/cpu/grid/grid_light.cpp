@@ -5,62 +5,46 @@
 #include <cmath>
 
 #include "layers/lit_parts.h"
+#include "packet_setup.h"
 #include "packet_surfaces.h"
 #include "pellucid/field/trilinear.h"
 #include "pellucid/render/multivariate_integrator.h"
 
 namespace pellucid {
-namespace {
-
-/// `middle`: of the grid.
-LightSource<float> in_float(const LightSource<double>& light, const Vec3<double>& middle) {
-  const auto single = [](double x) { return static_cast<float>(x); };
-  LightSource<float> result;
-  result.kind = static_cast<LightSource<float>::Kind>(light.kind);
-  const bool is_point = light.kind == LightSource<double>::Kind::point;
-  const Vec3<double> place = is_point ? light.place - middle : light.place;
-  result.place = {single(place.x), single(place.y), single(place.z)};
-  result.color = {single(light.color.r), single(light.color.g), single(light.color.b)};
-  return result;
-}
 
 bool has_moderate_square(double x) {
   return x == 0 || (x > 1e-12 && x < 1e12);
 }
 
-/// Returns the largest gradient that data of this range may have between two values.
-double steepest_gradient(const LayerLook& look, const Volume& volume) {
-  const VolumeStatistics& data = volume.statistics();
-  return (data.maximum - data.minimum) / voxel_of(look.layer());
+LightSource<float> in_single(const LightSource<double>& light, const Vec3<double>& origin) {
+  const auto single = [](double x) { return static_cast<float>(x); };
+  LightSource<float> result;
+  result.kind = static_cast<LightSource<float>::Kind>(light.kind);
+  const bool is_point = light.kind == LightSource<double>::Kind::point;
+  const Vec3<double> place = is_point ? light.place - origin : light.place;
+  result.place = {single(place.x), single(place.y), single(place.z)};
+  result.color = {single(light.color.r), single(light.color.g), single(light.color.b)};
+  return result;
 }
 
-/// Returns the middle of a grid in the world.
-Vec3<double> middle_of(const Volume& volume) {
+Vec3<double> place_lights(std::span<const Vec3<double>> corners,
+                          const std::vector<LightSource<double>>& lights, PacketLight& result) {
   Vec3<double> sum;
-  for (const Vec3<double>& corner : volume.world_corners()) sum = sum + corner;
-  return sum * 0.125;
-}
-
-/// Puts the lights into `result`, and where they and the grid are, seen from the grid's middle.
-void place_lights(const Volume& volume, const std::vector<LightSource<double>>& lights,
-                  PacketLight& result) {
-  const Vec3<double> middle = middle_of(volume);
+  for (const Vec3<double>& corner : corners) sum = sum + corner;
+  const Vec3<double> middle = sum * (1 / static_cast<double>(corners.size()));
   double farthest = 0;
-  for (const Vec3<double>& corner : volume.world_corners()) {
+  for (const Vec3<double>& corner : corners) {
     farthest = std::max(farthest, length(corner - middle));
   }
   for (const LightSource<double>& light : lights) {
-    result.light[result.lights++] = in_float(light, middle);
+    result.light[result.lights++] = in_single(light, middle);
     if (light.kind != LightSource<double>::Kind::point) continue;
     ++result.points;
     farthest = std::max(farthest, length(light.place - middle));
   }
   result.farthest = static_cast<float>(farthest);
-  const Vec3<double> origin = volume.world_from_grid().point({0, 0, 0}) - middle;
-  for (int c = 0; c < 3; ++c) result.world_origin[c] = origin[c];
+  return middle;
 }
-
-}  // namespace
 
 Reflection<float> in_single(const Reflection<double>& r) {
   const auto single = [](double x) { return static_cast<float>(x); };
@@ -83,7 +67,9 @@ std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<
       return std::nullopt;
     }
     result.reflection = in_single(*r);
-    place_lights(volume, lights, result);
+    const Vec3<double> middle = place_lights(volume.world_corners(), lights, result);
+    const Vec3<double> origin = volume.world_from_grid().point({0, 0, 0}) - middle;
+    for (int i = 0; i < 3; ++i) result.world_origin[i] = origin[i];
     if (!has_moderate_square(static_cast<double>(result.farthest))) return std::nullopt;
     result.of_field = look.layer().shading->gradient == GradientKind::field ? 1 : 0;
   }
@@ -97,9 +83,16 @@ std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<
   return result;
 }
 
-bool fits_single(const Volume& volume) {
-  const std::string_view type = type_name(volume.data());
-  return type != "u32" && type != "i32" && type != "f64";
+double steepest_gradient(const LayerLook& look, const Volume& volume) {
+  const VolumeStatistics& data = volume.statistics();
+  return (data.maximum - data.minimum) / voxel_of(look.layer());
+}
+
+bool suits_single(const PiecewiseLinear<double>& factor, double largest, double steepest) {
+  for (int i = 0; i + 1 < factor.count; ++i) {
+    if (!(factor.value[i + 1] - factor.value[i] > 1e-5 * steepest)) return false;
+  }
+  return has_moderate_square(steepest) && largest < 1e6;
 }
 
 std::unique_ptr<const GridLight> GridLight::make(const Layer& layer,
@@ -135,15 +128,10 @@ GridLight::GridLight(const Layer& layer, const std::vector<Light>& lights,
   if (layer.gradient_opacity) magnitude_.emplace(volume_, GradientKind::smooth);
 }
 
-/// Returns false where control points are so close that binary32 does not tell magnitudes apart
-/// there.
 bool GridLight::add_factor(const GradientOpacity& factor) {
   const double steepest = steepest_gradient(look_, volume_);
   const PiecewiseLinear<double>& table = *look_.extinction_factor();
-  for (int i = 0; i + 1 < table.count; ++i) {
-    if (!(table.value[i + 1] - table.value[i] > 1e-5 * steepest)) return false;
-  }
-  if (!has_moderate_square(steepest) || !(factor.largest_factor() < 1e6)) return false;
+  if (!suits_single(table, factor.largest_factor(), steepest)) return false;
   factor_.emplace(table, steepest);
   light_.factor = &factor_->view();
   light_.largest_factor = std::max(static_cast<float>(factor.largest_factor()) * 1.0001f, 1.0f);

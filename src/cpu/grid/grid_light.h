@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "layers/grid_gradient.h"
@@ -22,10 +23,20 @@ namespace pellucid {
 std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<double>* reflection,
                                         const Volume& volume,
                                         const std::vector<LightSource<double>>& lights);
-/// Returns how a layer reflects light, in binary32.
+/// Return how a layer reflects light, and a light seen from `origin`, in binary32.
 Reflection<float> in_single(const Reflection<double>& reflection);
-/// Returns whether binary32 holds all values of the data's type.
-bool fits_single(const Volume& volume);
+LightSource<float> in_single(const LightSource<double>& light, const Vec3<double>& origin);
+/// Puts at most PacketLight::most_lights lights into `result`, seen from the middle of the corners,
+/// which is returned, and how far a corner or a light is from there.
+Vec3<double> place_lights(std::span<const Vec3<double>> corners,
+                          const std::vector<LightSource<double>>& lights, PacketLight& result);
+/// Returns whether binary32 holds the square of x well.
+bool has_moderate_square(double x);
+/// Returns the largest gradient that data of this range may have between two values.
+double steepest_gradient(const LayerLook& look, const Volume& volume);
+/// Returns whether binary32 tells magnitudes of gradients up to `steepest` apart at the control
+/// points of a factor of at most `largest`.
+bool suits_single(const PiecewiseLinear<double>& factor, double largest, double steepest);
 
 /// The light of a volume and its gradient opacity as packets see them, and cells that packets hand
 /// back.

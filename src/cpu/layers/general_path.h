@@ -4,9 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "bundle.h"
-#include "clipped_layer.h"
-#include "lit_parts.h"
+#include "layer_merge.h"
+#include "medium_parts.h"
 #include "ray_tracer.h"
 
 namespace pellucid {
@@ -15,18 +14,15 @@ class MultivariateRayIntegrator;
 
 /// The general path. In: any number of layers of any kind, with clips. Out: what a part of a ray
 /// gathers, within its tolerance, in both grades. Each layer turns a ray into a stream of stretches
-/// on which its channels are polynomials (layer_stream.h). The streams are merged: between two ends
-/// of any stretch, the layers that are present are one function of all of their channels
-/// (bundle.h), a sum of terms, which MultivariateRayIntegrator cuts and integrates; where any of
-/// them has light or gradient opacity, lit panels take the place of that function (lit_parts.h).
-/// Surfaces are met between the stretches (surface_events.h). Called by SceneTracer for all that no
-/// faster tracer is for. Used by one thread.
+/// on which its channels are polynomials (layer_stream.h). The streams are merged (layer_merge.h):
+/// between two ends of any stretch, a MultivariateRayIntegrator integrates the layers that are
+/// present (medium_parts.h). Called by SceneTracer for all that no faster tracer is for. Used by
+/// one thread.
 class GeneralPath {
  public:
   /// `layers` and `lights` must outlive the object.
   GeneralPath(const std::vector<ClippedLayer>& layers,
               const std::vector<LightSource<double>>& lights, const RayTolerance& wanted);
-  ~GeneralPath();
   GeneralPath(const GeneralPath&) = delete;
   GeneralPath& operator=(const GeneralPath&) = delete;
 
@@ -38,25 +34,16 @@ class GeneralPath {
   double find_depth(const RayPart& part, double depth);
 
  private:
-  class ClippedStream;
-
   RayResult follow(const RayPart& part, double tolerance, double target, double* position);
-  long merge(const Ray<double>& ray, Interval<double> inside,
-             MultivariateRayIntegrator& integrator);
-  void add_lit(const Ray<double>& ray, Interval<double> range, double left_out,
-               double position_error, MultivariateRayIntegrator& integrator);
-  double meet_surfaces(double t, MultivariateRayIntegrator& integrator);
+  bool add(const MergedPart& part, const Ray<double>& ray, MultivariateRayIntegrator& integrator);
 
   RayTolerance wanted_;
   const std::vector<LightSource<double>>& lights_;
-  LitParts parts_;
-  std::vector<const LayerSource*> sources_;
-  std::vector<ClippedStream> streams_;
-  Bundles bundles_;
-  std::vector<int> key_;                    ///< for each layer the function that is present, or -1
-  MultivariateTransfer<double> nothing_{};  ///< before the first stretch
+  LayerMerge merge_;
+  MediumParts parts_;
+  std::vector<std::vector<double>> at_mark_;  ///< transparency, by layer and isosurface
+  MultivariateTransfer<double> nothing_{};    ///< before the first stretch
   double largest_extinction_ = 0;
-  bool surfaces_ = false;  ///< whether any layer has some
 };
 
 }  // namespace pellucid

@@ -57,6 +57,15 @@ double GridGradient::doubt(const StructuredWalk<double>::Step& step,
   return largest;
 }
 
+bool GridGradient::is_doubtful(const StructuredWalk<double>::Step& step,
+                               const GridAxis<double> (&axis)[3], const PlaneDoubt& planes) const {
+  bool has_other = false;
+  if (kind_ != GradientKind::smooth) {
+    planes.for_each_other_cell(axis, step, [&](const int(&)[3]) { has_other = true; });
+  }
+  return has_other;
+}
+
 CubicBernstein<double> GridGradient::magnitude_along(
     const StructuredWalk<double>::Step& step) const {
   return pellucid::magnitude_along(smooth_corners(step.cell), volume_.grid_from_world().matrix,

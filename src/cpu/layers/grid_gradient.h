@@ -24,6 +24,9 @@ class GridGradient {
   /// the others 0. `axis`: that of the walk; `gradient`: that of along().
   double doubt(const StructuredWalk<double>::Step& step, const GridAxis<double> (&axis)[3],
                const PlaneDoubt& planes, const CubicBernstein<double> (&gradient)[3]) const;
+  /// Returns whether it may differ at all.
+  bool is_doubtful(const StructuredWalk<double>::Step& step, const GridAxis<double> (&axis)[3],
+                   const PlaneDoubt& planes) const;
   /// Computes the magnitude of the `smooth` gradient at the data values, trilinear between.
   CubicBernstein<double> magnitude_along(const StructuredWalk<double>::Step& step) const;
 

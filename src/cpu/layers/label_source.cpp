@@ -35,7 +35,7 @@ class LabelSource : public LayerSource {
     }
   }
 
-  std::unique_ptr<LayerStream> stream() const override;
+  std::unique_ptr<LayerStream> stream(bool by_cells) const override;
 
   const LabelAxes& axes() const { return axes_; }
   /// Returns a label's extinction; NaN is vacuum.
@@ -122,7 +122,7 @@ class LabelStream : public GridStream {
   bool has_ahead_ = false;
 };
 
-std::unique_ptr<LayerStream> LabelSource::stream() const {
+std::unique_ptr<LayerStream> LabelSource::stream(bool /*by_cells*/) const {
   // Blocks say nothing of values beside NaN.
   const Volume& volume = content_.labels->volume();
   const bool known = volume.statistics().nan == 0;

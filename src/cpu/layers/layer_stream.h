@@ -10,6 +10,7 @@
 #include "pellucid/render/integrate_cell.h"
 #include "pellucid/scene/layer.h"
 #include "pellucid/transfer/multivariate.h"
+#include "pellucid/traverse/structured_walk.h"
 
 namespace pellucid {
 
@@ -27,6 +28,10 @@ struct LayerStretch {
   CubicBernstein<double> gradient[3];  ///< in the world, for light
   double gradient_doubt = 0;           ///< by how much it may be another one, beside its rounding
   CubicBernstein<double> magnitude;    ///< for gradient opacity
+
+  /// Whether `cell`, which holds the stretch, is all that is told: neither data nor gradients.
+  bool by_cell = false;
+  StructuredWalk<double>::Step cell{};
 };
 
 /// The stretches of one layer along rays, one ray after the other. Used by one thread.
@@ -59,7 +64,10 @@ class LayerSource {
 
   /// Returns the functions that its stretches refer to.
   const std::vector<MultivariateTransfer<double>>& functions() const noexcept { return functions_; }
-  virtual std::unique_ptr<LayerStream> stream() const = 0;
+  /// `by_cells`: stretches may tell cells of cells() alone.
+  virtual std::unique_ptr<LayerStream> stream(bool by_cells) const = 0;
+  /// Returns the uniform grid whose cells its stretches can tell; null: none.
+  virtual const Volume* cells() const noexcept { return nullptr; }
   const LayerLook& look() const noexcept { return look_; }
   double most_extinction() const noexcept { return most_extinction_; }
 

@@ -40,7 +40,7 @@ class MeshSource : public LayerSource {
     }
   }
 
-  std::unique_ptr<LayerStream> stream() const override;
+  std::unique_ptr<LayerStream> stream(bool by_cells) const override;
 
   const Tetrahedra& mesh() const { return mesh_; }
   const MeshFields& fields() const { return fields_.view(); }
@@ -156,7 +156,7 @@ class MeshStream : public LayerStream {
   Interval<double> range_{0, 0};
 };
 
-std::unique_ptr<LayerStream> MeshSource::stream() const {
+std::unique_ptr<LayerStream> MeshSource::stream(bool /*by_cells*/) const {
   return std::make_unique<MeshStream>(*this);
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "general_path.h"
+#include "layered_packets.h"
 #include "pellucid/geometry/box.h"
 #include "pellucid/traverse/structured_walk.h"
 
@@ -30,15 +31,26 @@ struct Piece {
 
 /// A ray on its way, composited front to back.
 struct Journey {
+  /// What was found on a piece.
+  struct Found {
+    Interval<double> range;
+    double opacity_before;  ///< of the ray
+    double opacity;         ///< of the piece
+    HalfOpacity half;       ///< of that
+  };
   std::vector<Piece> pieces;
   RayResult found = missed_ray_result();
-  bool done = false;  ///< what is left cannot matter
+  std::vector<Found> of_pieces;  ///< those that absorb, front to back
+  bool done = false;             ///< what is left cannot matter
 
   double transparency() const { return 1 - found.opacity; }
   /// The error of a part bounds what it does to everything behind it (RayResult::error), so that
   /// errors add up behind transparencies.
-  void add_behind(const RayResult& part) {
+  void add_behind(const RayResult& part, Interval<double> range) {
     const double before = transparency();
+    if (part.opacity > 0) {
+      of_pieces.push_back({range, found.opacity, part.opacity, part.half});
+    }
     found.radiance += before * part.radiance;
     found.error += before * part.error;
     found.opacity += before * part.opacity;
@@ -47,6 +59,26 @@ struct Journey {
     found.cells += part.cells;
     found.evaluations += part.evaluations;
     found.spans += part.spans;
+  }
+  /// Says between which places half of the opacity is reached.
+  void bracket_half() {
+    if (found.half_opacity_depth < infinity) return;
+    for (const Found& piece : of_pieces) {
+      const double left = 1 - piece.opacity_before;
+      const double wanted = 0.5 * found.opacity;
+      if (piece.opacity_before + left * piece.opacity < wanted) continue;
+      // Half of the piece's own opacity is between these.
+      const Interval<double> own{std::max(piece.range.begin, piece.half.range.begin),
+                                 std::min(piece.range.end, piece.half.range.end)};
+      const double at_begin = piece.opacity_before + left * piece.half.opacity_before;
+      const double at_half = piece.opacity_before + left * 0.5 * piece.opacity;
+      if (wanted < at_begin) {
+        found.half = {{piece.range.begin, own.begin}, piece.opacity_before};
+      } else {
+        found.half = {{own.begin, wanted < at_half ? own.end : piece.range.end}, at_begin};
+      }
+      return;
+    }
   }
 };
 
@@ -59,7 +91,11 @@ class SceneTracer : public RayTracer {
         wanted_(wanted),
         depth_(depth),
         only_(layers_.size() == 1 && layers_[0].clips.empty() ? layers_[0].setup->fast()
-                                                              : nullptr) {}
+                                                              : nullptr) {
+    if (only_ == nullptr && !is_sampled()) {
+      packets_ = LayeredPackets::make(layers_, lights_, wanted_, depth_);
+    }
+  }
 
   std::optional<Surroundings> surroundings() const override {
     return only_ != nullptr ? only_->surroundings() : std::nullopt;
@@ -104,7 +140,10 @@ class SceneTracer : public RayTracer {
     results.reserve(parts.size());
     for (std::size_t i = 0; i < parts.size(); ++i) {
       Journey& journey = journeys[i];
-      if (depth_ && !options.stop.stop_requested()) find_depth(general, parts[i], journey.found);
+      if (depth_ && !options.stop.stop_requested()) {
+        journey.bracket_half();
+        find_depth(general, parts[i], journey.found);
+      }
       results.push_back(journey.found);
     }
     return results;
@@ -267,12 +306,12 @@ class SceneTracer : public RayTracer {
       for (std::size_t k = 0; k < found.size(); ++k) {
         Journey& journey = journeys[group.of[k]];
         if (std::isinf(found[k].error)) {
-          journey.add_behind(integrate(general, group.parts[k], wanted_.tolerance * own.share));
+          journey.add_behind(integrate(general, group.parts[k], wanted_.tolerance * own.share),
+                             group.parts[k].range);
         } else {
-          journey.add_behind(found[k]);
+          journey.add_behind(found[k], group.parts[k].range);
           if (journey.pieces.size() == 1) {
             journey.found.half_opacity_depth = found[k].half_opacity_depth;
-            journey.found.half = found[k].half;
           }
         }
       }
@@ -283,7 +322,10 @@ class SceneTracer : public RayTracer {
   void follow_together(std::size_t n, const std::vector<RayPart>& parts,
                        const TraceOptions& options, std::vector<Journey>& journeys,
                        std::optional<GeneralPath>& general) const {
-    for (std::size_t i = 0; i < journeys.size() && !options.stop.stop_requested(); ++i) {
+    std::vector<RayPart> ahead;
+    std::vector<double> tolerances;
+    std::vector<std::size_t> of;
+    for (std::size_t i = 0; i < journeys.size(); ++i) {
       Journey& journey = journeys[i];
       if (!goes_on(journey, n, options)) continue;
       const Piece& piece = journey.pieces[n];
@@ -296,8 +338,19 @@ class SceneTracer : public RayTracer {
       }
       const double own = std::max(left, 0.5 * piece.share * tolerance) /
                          std::max(journey.transparency(), 1.0 / 64);
-      journey.add_behind(
-          integrate(general, {parts[i].ray, piece.range}, std::min(own, largest_tolerance)));
+      ahead.push_back({parts[i].ray, piece.range});
+      tolerances.push_back((1 - ray_left_out_share) * std::min(own, largest_tolerance));
+      of.push_back(i);
+    }
+    if (packets_) {
+      const std::vector<RayResult> found = packets_->integrate(ahead, tolerances, options.stop);
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        journeys[of[k]].add_behind(found[k], ahead[k].range);
+      }
+      return;
+    }
+    for (std::size_t k = 0; k < ahead.size() && !options.stop.stop_requested(); ++k) {
+      journeys[of[k]].add_behind(made(general).integrate(ahead[k], tolerances[k]), ahead[k].range);
     }
   }
 
@@ -325,6 +378,7 @@ class SceneTracer : public RayTracer {
   const RayTolerance wanted_;
   const bool depth_;
   const RayTracer* const only_;  ///< of the only layer, which has no clips; null otherwise
+  std::unique_ptr<const LayeredPackets> packets_;  ///< for the general path's parts; may be null
 };
 
 }  // namespace

@@ -77,14 +77,6 @@ void SurfaceEvents::take(const LayerStretch& stretch) {
   std::ranges::stable_sort(events_, {}, &SurfaceEvent::t);
 }
 
-void SurfaceEvents::mark(const SurfaceEvent& event, double transparency) {
-  sides_[event.isosurface].transparency = transparency;
-}
-
-double SurfaceEvents::transparency_at_mark(const SurfaceEvent& event) const {
-  return sides_[event.isosurface].transparency;
-}
-
 void SurfaceEvents::follow(std::size_t isosurface, const LayerStretch& stretch) {
   const Isosurface& surface = source_.look().isosurfaces()[isosurface];
   const CubicBernstein<double>& data = stretch.data[surface.channel];

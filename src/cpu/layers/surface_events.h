@@ -45,15 +45,10 @@ class SurfaceEvents {
   const SurfaceEvent* next() const { return next_ < events_.size() ? &events_[next_] : nullptr; }
   void pop() { ++next_; }
 
-  /// Remembers the transparency in front of a mark, and returns it for a charge.
-  void mark(const SurfaceEvent& event, double transparency);
-  double transparency_at_mark(const SurfaceEvent& event) const;
-
  private:
   struct Side {
     int side = 0;          ///< -1: below the value, 1: above, 0: not known
     bool pending = false;  ///< within rounding of the value since the mark
-    double transparency = 1;
   };
 
   void follow(std::size_t isosurface, const LayerStretch& stretch);

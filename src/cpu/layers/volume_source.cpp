@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "grid_gradient.h"
 #include "grid_stream.h"
 #include "label_axes.h"
+#include "packet_setup.h"
 #include "pellucid/render/integrate_multivariate_ray.h"
 #include "pellucid/scene/block_classes_storage.h"
 #include "pellucid/scene/multivariate_blocks_storage.h"
@@ -62,6 +64,11 @@ class GridGradients {
     }
     if (magnitude_) stretch.magnitude = magnitude_->magnitude_along(step);
   }
+  /// Returns whether the gradient of a step may be that of another cell.
+  bool is_doubtful(const StructuredWalk<double>::Step& step, const GridAxis<double> (&axis)[3],
+                   const PlaneDoubt& planes) const {
+    return gradient_ && gradient_->is_doubtful(step, axis, planes);
+  }
 
  private:
   std::optional<GridGradient> gradient_, magnitude_;
@@ -83,15 +90,27 @@ class VolumeSource : public LayerSource {
       for (const LabelMask::Choice& choice : content_.mask->choices()) {
         add(*choice.transfer_function, task);
       }
+      for (std::int32_t label = 0; label < common_labels; ++label) {
+        function_of_.push_back(content_.mask->choice_of(label) + 1);
+      }
     }
     visit_isosurfaces(classes_, records_, 0, look(), task);
+    // Surfaces are looked for in the data.
+    in_cells_ = !look().has_surfaces() && fits_single(*content_.volume) &&
+                suits_packets(*content_.volume, most_extinction());
   }
 
-  std::unique_ptr<LayerStream> stream() const override;
+  std::unique_ptr<LayerStream> stream(bool by_cells) const override;
+  const Volume* cells() const noexcept override {
+    return in_cells_ ? content_.volume.get() : nullptr;
+  }
 
   /// Returns the function of the label cell.
   int function_at(const int (&cell)[3]) const {
     const double label = labels_->value(cell);
+    if (label >= 0 && label < static_cast<double>(function_of_.size())) {
+      return function_of_[static_cast<std::size_t>(label)];
+    }
     return std::isnan(label) ? 0 : content_.mask->choice_of(static_cast<std::int32_t>(label)) + 1;
   }
   const LabelAxes* labels() const { return labels_ ? &*labels_ : nullptr; }
@@ -99,6 +118,9 @@ class VolumeSource : public LayerSource {
   const GridGradients& gradients() const { return gradients_; }
 
  private:
+  /// Labels whose functions are looked up without a search.
+  static constexpr std::int32_t common_labels = 1024;
+
   void add(const TransferFunction& function, const LayerTask& task) {
     const TransferTablesStorage tables(function);
     const BlockClassesStorage classes(records_, tables.tables(),
@@ -121,15 +143,18 @@ class VolumeSource : public LayerSource {
   std::vector<BlockClass> classes_;
   std::deque<ChannelTable<double>> tables_;  ///< addresses stay
   std::optional<LabelAxes> labels_;
+  std::vector<int> function_of_;  ///< of labels from 0 on
+  bool in_cells_ = false;
 };
 
 /// The cells of a grid as stretches, cut at the cells of a mask.
 class VolumeStream : public GridStream {
  public:
   VolumeStream(const VolumeSource& source, const Volume& volume, const BlockRecords& records,
-               const BlockClass* classes)
+               const BlockClass* classes, bool by_cells)
       : GridStream(volume, source.grid().axis, records, classes, source.look().slices(), false),
-        source_(source) {}
+        source_(source),
+        by_cells_(by_cells) {}
 
   Interval<double> start(const Ray<double>& ray) override {
     if (source_.labels() != nullptr) sides_.start(grid_from_world(), ray);
@@ -138,40 +163,70 @@ class VolumeStream : public GridStream {
   void restrict_to_range(Interval<double> range) override {
     GridStream::restrict_to_range(range);
     labels_.reset();
+    range_ = range;
+    cut_to_ = step_.t_end;
   }
 
   bool next(LayerStretch& stretch) override {
-    for (;;) {
-      if (labels_) {
-        StructuredWalk<double>::Step part;
-        if (labels_->next(part)) {
-          cut(part, stretch);
-          return true;
-        }
-        labels_.reset();
-      }
-      StructuredWalk<double>::Step step;
+    while (!(cut_to_ < step_.t_end)) {
       int block = 0;
       bool skipped = false;
-      if (!next_cell(step, block, skipped)) return false;
-      if (skipped || !make_multivariate_span(source_.grid(), step, span_)) continue;
-      stretch.begin = begin_ = step.t_begin;
-      stretch.end = end_ = step.t_end;
-      stretch.position_error = grid_position_error(step.t_end);
-      source_.gradients().fill(step, source_.grid().axis, planes(),
-                               source_.labels() == nullptr ? stretch : whole_);
-      if (source_.labels() == nullptr) {
-        stretch.function = 0;
-        stretch.data[0] = span_.data[0];
-        return true;
+      if (!next_cell(step_, block, skipped)) {
+        cut_to_ = step_.t_end;
+        return false;
       }
-      labels_.emplace(source_.labels()->axis(), ray(), Interval<double>{begin_, end_});
+      cut_to_ = step_.t_end;
+      if (skipped) continue;
+      by_cell_ =
+          by_cells_ && !source_.gradients().is_doubtful(step_, source_.grid().axis, planes());
+      if (!by_cell_) {
+        if (!make_multivariate_span(source_.grid(), step_, span_)) continue;
+        source_.gradients().fill(step_, source_.grid().axis, planes(), whole_);
+      }
+      if (source_.labels() != nullptr) {
+        cut_to_ = step_.t_begin;
+        come_to(step_.t_begin);
+        break;
+      }
+      stretch.begin = step_.t_begin;
+      stretch.end = step_.t_end;
+      stretch.position_error = grid_position_error(step_.t_end);
+      stretch.function = 0;
+      tell(0, 1, stretch);
+      return true;
     }
+    cut(stretch);
+    return true;
   }
 
  private:
-  void cut(const StructuredWalk<double>::Step& part, LayerStretch& stretch) {
-    const double length = end_ - begin_;
+  /// Goes on to the label at t.
+  void come_to(double t) {
+    // Through few cells, or over a gap.
+    for (int steps = 0; steps < 4 && labels_; ++steps) {
+      if (label_.t_end > t) return;
+      if (!labels_->next(label_)) break;
+    }
+    labels_.emplace(source_.labels()->axis(), ray(), Interval<double>{t, range_.end});
+    if (labels_->next(label_)) return;
+    // The grids end at the same places but for rounding.
+    label_.t_end = std::numeric_limits<double>::infinity();
+  }
+
+  /// Tells the next part of a cell that has one label.
+  void cut(LayerStretch& stretch) {
+    StructuredWalk<double>::Step part = label_;
+    part.t_begin = cut_to_;
+    part.t_end = std::min(label_.t_end, step_.t_end);
+    const double of_label = label_.t_end - label_.t_begin;
+    const bool is_begun = part.t_begin > label_.t_begin, goes_on = part.t_end < label_.t_end;
+    if (of_label > 0 && (is_begun || goes_on)) {
+      const auto place = [&](double t) {
+        return label_.entry + (label_.exit - label_.entry) * ((t - label_.t_begin) / of_label);
+      };
+      if (is_begun) part.entry = place(part.t_begin);
+      if (goes_on) part.exit = place(part.t_end);
+    }
     stretch.begin = part.t_begin;
     stretch.end = part.t_end;
     stretch.function = source_.function_at(part.cell);
@@ -182,24 +237,47 @@ class VolumeStream : public GridStream {
         stretch.left_out = source_.most_extinction();
       }
     });
-    const double from = (part.t_begin - begin_) / length, to = (part.t_end - begin_) / length;
-    stretch.data[0] = restrict_to(span_.data[0], from, to);
+    const double length = step_.t_end - step_.t_begin;
+    tell((part.t_begin - step_.t_begin) / length, (part.t_end - step_.t_begin) / length, stretch);
+    cut_to_ = part.t_end;
+    if (cut_to_ < step_.t_end) come_to(cut_to_);
+  }
+
+  /// Tells what is known of the share [from, to] of the cell.
+  void tell(double from, double to, LayerStretch& stretch) const {
+    stretch.by_cell = by_cell_;
+    if (by_cell_) {
+      stretch.cell = step_;
+      return;
+    }
+    const bool whole = from <= 0 && to >= 1;
+    stretch.data[0] = whole ? span_.data[0] : restrict_to(span_.data[0], from, to);
     if (!source_.look().is_lit()) return;
     stretch.gradient_doubt = whole_.gradient_doubt;
-    for (int a = 0; a < 3; ++a) stretch.gradient[a] = restrict_to(whole_.gradient[a], from, to);
-    stretch.magnitude = restrict_to(whole_.magnitude, from, to);
+    for (int a = 0; a < 3; ++a) {
+      stretch.gradient[a] = whole ? whole_.gradient[a] : restrict_to(whole_.gradient[a], from, to);
+    }
+    stretch.magnitude = whole ? whole_.magnitude : restrict_to(whole_.magnitude, from, to);
   }
 
   const VolumeSource& source_;
+  bool by_cells_;
   PlaneDoubt sides_;
+  // The cell.
+  StructuredWalk<double>::Step step_{};
+  bool by_cell_ = false;  ///< whether neither its data nor its gradients are known
   MultivariateSpan<double> span_;
-  double begin_ = 0, end_ = 0;  ///< of the cell
-  LayerStretch whole_;          ///< the gradients in it
+  LayerStretch whole_;  ///< the gradients in it
+  // The mask.
+  Interval<double> range_{0, 0};
+  double cut_to_ = 0;  ///< the part of the cell up to here was told
   std::optional<StructuredWalk<double>> labels_;
+  StructuredWalk<double>::Step label_{};  ///< at cut_to_
 };
 
-std::unique_ptr<LayerStream> VolumeSource::stream() const {
-  return std::make_unique<VolumeStream>(*this, *content_.volume, records_, classes_.data());
+std::unique_ptr<LayerStream> VolumeSource::stream(bool by_cells) const {
+  return std::make_unique<VolumeStream>(*this, *content_.volume, records_, classes_.data(),
+                                        by_cells && cells() != nullptr);
 }
 
 /// Several channels with a function of all of them.
@@ -223,7 +301,7 @@ class ChannelsSource : public LayerSource {
     }
   }
 
-  std::unique_ptr<LayerStream> stream() const override;
+  std::unique_ptr<LayerStream> stream(bool by_cells) const override;
 
   const MultichannelGrid& grid() const { return grid_; }
   const MultivariateBlocks& blocks() const { return blocks_; }
@@ -279,7 +357,7 @@ class ChannelsStream : public GridStream {
   const ChannelsSource& source_;
 };
 
-std::unique_ptr<LayerStream> ChannelsSource::stream() const {
+std::unique_ptr<LayerStream> ChannelsSource::stream(bool /*by_cells*/) const {
   return std::make_unique<ChannelsStream>(*this, channels_.grid());
 }
 

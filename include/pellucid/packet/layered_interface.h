@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/packet/interface.h"
+
+extern "C" {
+
+/// What comes next on a ray through several layers, in records of floats: a head and, for each
+/// layer that is there, a part.
+struct PellucidLayerRow {
+  enum Kind : int {
+    medium,   ///< of the layers that `present` names
+    absent,   ///< nothing but what is left out
+    unknown,  ///< an opacity of at most `opacity`
+    surface,  ///< at a place
+    mark,     ///< the transparency in front of it is to be remembered
+    doubt,    ///< an unknown opacity that is seen through the transparency at a mark
+    by_host,  ///< a medium that is not for packets
+    end       ///< of the ray
+  };
+  // Fields of a head. World lengths: of the row, of the ray from its begin on, of how far its ends
+  // may be off; a bound on the extinction that is left out; the Kind; bits of the layers that are
+  // present; the begin in the world, from PacketLight's origin; of surfaces and the like their
+  // opacity, color and error, and the number of a mark.
+  enum Head : int {
+    length,
+    left,
+    position_error,
+    left_out,
+    kind,
+    present,
+    entry,
+    opacity = entry + 3,
+    color,
+    error = color + 3,
+    mark_number,
+    head_fields = 16
+  };
+  // Fields of a part: the number of the function, PartKind, what the data may be off by; their
+  // Bernstein coefficients, those of the gradient in the world, and of its magnitude. Of a cell its
+  // place in the grid, and those of entry and exit in it.
+  enum Part : int {
+    function,
+    part_kind,
+    rounding,
+    data = 4,
+    gradient = data + 4,
+    magnitude = gradient + 12,
+    part_fields = magnitude + 4,
+    place = data,
+    entry_in_cell = place + 4,
+    exit_in_cell = entry_in_cell + 3,
+    cell_fields = exit_in_cell + 5
+  };
+  enum PartKind : int {
+    curve,
+    constant,  ///< in place of data extinction and color
+    cell
+  };
+  static constexpr int most_lanes = 16;
+  static constexpr int of_a_ray = 16;  ///< rows, one after the other, and then the first again
+  static constexpr int most_layers = 8, most_marks = 16;
+};
+
+/// Rays through several layers, one in each lane, and what lies ahead of them. A packet is begun
+/// once and goes on as often as it has new rows.
+struct PellucidLayeredJob {
+  enum Step : std::int32_t { size, begin, go_on, finish };
+  Step step;
+  void* state;              ///< aligned to 64 bytes; of state_size bytes
+  std::int64_t state_size;  ///< out, of `size`
+  std::int32_t lanes;       ///< out, of `size`
+
+  // Of all rays.
+  std::int32_t layers;
+  const void* const* functions;  ///< BinnedTransfer of each
+  const void* const* light;      ///< PacketLight of each layer; null: unlit
+  /// Of each layer the grid whose cells parts name; null: none do.
+  const PellucidPacketJob* const* grid;
+  double largest_color, largest_extinction;
+  std::int32_t depth;  ///< whether results are to say where half of the opacity is
+
+  // Of the lanes' rays.
+  std::int32_t count;
+  float tolerance[PellucidLayerRow::most_lanes], length[PellucidLayerRow::most_lanes];
+  float to_eye[3][PellucidLayerRow::most_lanes];
+  const float* head;                                ///< [lane][row]
+  const float* part;                                ///< [layer][lane][row]
+  std::int32_t next[PellucidLayerRow::most_lanes];  ///< the first row that is not taken; in and out
+  std::int32_t end[PellucidLayerRow::most_lanes];   ///< behind the last one that is there
+  std::int32_t done[PellucidLayerRow::most_lanes];  ///< out: nothing more matters
+
+  // Where a row is not for packets, or no more of it: the caller integrates the share [from, 1] of
+  // the row before `next`.
+  std::int32_t waits[PellucidLayerRow::most_lanes];  ///< out
+  double from[PellucidLayerRow::most_lanes];
+  double allowance_flat[PellucidLayerRow::most_lanes];
+  double allowance_per_opacity[PellucidLayerRow::most_lanes];
+  PellucidCellResult handed[PellucidLayerRow::most_lanes];  ///< in, of lanes that wait
+
+  PellucidRayResult* results;  ///< of `finish`
+};
+
+PELLUCID_DECLARE_ENTRIES(void, pellucid_integrate_layers, (PellucidLayeredJob * job));
+}

@@ -1,0 +1,625 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/error/random_errors.h"
+#include "pellucid/packet/cells/span_light.h"
+#include "pellucid/packet/layered_interface.h"
+#include "pellucid/packet/layers/cell_loads.h"
+#include "pellucid/packet/layers/lane_transfers.h"
+#include "pellucid/packet/opacity_trace.h"
+#include "pellucid/packet/packet_fold.h"
+
+#if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
+namespace pellucid {
+
+/// Integrates N rays through several layers at once, each in a lane of its own and within its own
+/// tolerance; what a ray becomes depends on no other lane. What lies ahead of the rays comes in
+/// rows (layered_interface.h). Of a row each lane takes piece by piece: up to where the extinction
+/// of a layer has a corner, or light has a kink, and halved where the budget cannot pay for its
+/// color. The depth of a piece is the sum of the layers', its color
+///
+///   Σ τ_l C_l / Σ τ_l,
+///
+/// of means weighted by extinction where no layer has light and that suffices, else by Gauss nodes
+/// (span_light.h). In binary32; what that is not good enough for waits for the caller.
+template <int N>
+class LayeredPacket {
+ public:
+  using F = Batch<float, N>;
+  using D = Batch<double, N>;
+  using I = Batch<std::int32_t, N>;
+  using M = BatchMask<N>;
+  using Row = PellucidLayerRow;
+
+  explicit LayeredPacket(const PellucidLayeredJob& job) noexcept
+      : layers_(job.layers),
+        depth_(job.depth != 0),
+        largest_color_(static_cast<float>(job.largest_color)),
+        fold_(loaded(job.tolerance), job.largest_extinction, job.largest_color, loaded(job.length)),
+        trace_(depth_) {
+    const Vec3<F> to_eye{loaded(job.to_eye[0]), loaded(job.to_eye[1]), loaded(job.to_eye[2])};
+    for (int k = 0; k < layers_; ++k) {
+      new (&layer_[k]) Layer(job, k, to_eye);
+    }
+    alive_ = M::from_bits((1u << job.count) - 1u);
+  }
+
+  /// Goes on until most of the lanes whose rays are not through wait for rows, or for the caller.
+  void run(PellucidLayeredJob& job) noexcept {
+    job_ = &job;
+    next_ = loaded(job.next);
+    end_ = loaded(job.end);
+    take_handed();
+    for (;;) {
+      take_rows();
+      if (none(pending_)) break;
+      if (2 * count(alive_ & !pending_) > count(alive_)) break;
+      integrate(pending_);
+    }
+    next_.store(job.next);
+    const M done = !alive_;
+    for (int l = 0; l < N; ++l) {
+      job.done[l] = done[l] ? 1 : 0;
+      job.waits[l] = waits_[l] ? 1 : 0;
+    }
+    if (any(waits_)) ask_caller();
+  }
+
+  void store(const PellucidLayeredJob& job) const noexcept {
+    const SegmentResult<D> all = fold_.result();
+    const D error = fold_.error(convert<double>(pieces_ + by_caller_ + I(1)));
+    for (int l = 0; l < job.count; ++l) {
+      PellucidRayResult& r = job.results[l];
+      r = light_of_lane(all, l);
+      r.error = error[l];
+      r.evaluations = r.cells = rows_[l];
+      r.closed = pieces_[l] - panels_[l];
+      r.panels = panels_[l];
+      r.in_double = by_caller_[l];
+      r.proved = bits(proved_) >> l & 1;
+      trace_.find_half(l, 0, static_cast<double>(job.length[l]), r);
+    }
+  }
+
+ private:
+  /// How narrow a part of a row may get, and how many pieces there may be, before it is left to the
+  /// caller.
+  static constexpr float narrowest = 1.0f / 512;
+  static constexpr int most_pieces = 40;
+
+  /// A layer on the lanes' rows.
+  struct Layer {
+    M present{false};
+    LaneTransfers<N> transfers;
+    SpanLanes<float, N> span;
+    SpanPiece<float, N> piece;
+    bool has_light;
+    SpanLight<N> light;
+    LightOfPiece<N> lit;
+    bool has_cells;
+    union {
+      CellLoads<N> cells;
+    };
+
+    Layer(const PellucidLayeredJob& job, int number, const Vec3<F>& to_eye) noexcept
+        : transfers(job.functions),
+          has_light(job.light[number] != nullptr),
+          light(has_light ? *static_cast<const PacketLight*>(job.light[number]) : no_light(),
+                to_eye),
+          has_cells(job.grid[number] != nullptr) {
+      transfers.largest_color = static_cast<float>(job.largest_color);
+      if (has_cells) {
+        new (&cells) CellLoads<N>(
+            *job.grid[number],
+            has_light ? *static_cast<const PacketLight*>(job.light[number]) : no_light());
+      }
+    }
+  };
+  static const PacketLight& no_light() noexcept {
+    static constexpr PacketLight none{};
+    return none;
+  }
+
+  template <class T>
+  static Batch<T, N> loaded(const T (&of_lane)[Row::most_lanes]) noexcept {
+    return Batch<T, N>::load(of_lane);
+  }
+
+  /// Gives the lanes without a row the next one of their ray, if there is any.
+  [[gnu::flatten]] void take_rows() noexcept {
+    for (;;) {
+      const M lanes = alive_ & !pending_ & !waits_ & (next_ < end_);
+      if (none(lanes)) return;
+      std::int32_t lane[N];
+      for (int l = 0; l < N; ++l) lane[l] = l * Row::of_a_ray;
+      const I at = select(lanes, I::load(lane) + (next_ & I(Row::of_a_ray - 1)), I(0));
+      F head[Row::head_fields];
+      load_records<Row::head_fields>(job_->head, at, head);
+      next_ += select(lanes, I(1), I(0));
+      rows_ += select(lanes, I(1), I(0));
+      const I kind = convert<std::int32_t>(head[Row::kind]);
+      const auto is = [&](int one) noexcept { return lanes & (kind == I(one)); };
+      length_ = select(lanes, head[Row::length], length_);
+      left_ = select(lanes, head[Row::left], left_);
+      place_error_ = select(lanes, head[Row::position_error], place_error_);
+      left_out_ = select(lanes, head[Row::left_out], left_out_);
+      from_ = select(lanes, F(0), from_);
+      fold_.budget.set_remaining_length(select(lanes, left_, fold_.budget.remaining_length()));
+      const M medium = is(Row::medium);
+      if (any(medium)) begin(medium, at, head);
+      if (all(medium | !lanes)) continue;
+      waits_ = waits_ | is(Row::by_host);
+      const M ends = is(Row::end);
+      alive_ = alive_ & !ends;
+      meet(lanes & !medium & !waits_ & !ends, kind, head);
+    }
+  }
+
+  void begin(M lanes, I at, const F (&head)[Row::head_fields]) noexcept {
+    const I present = convert<std::int32_t>(head[Row::present]);
+    const Vec3<F> entry{head[Row::entry], head[Row::entry + 1], head[Row::entry + 2]};
+    pending_ = pending_ | lanes;
+    cap_ = select(lanes, F(1), cap_);
+    tried_ = select(lanes, I(0), tried_);
+    M waits(false);
+    for (int k = 0; k < layers_; ++k) {
+      Layer& layer = layer_[k];
+      const M here = lanes & ((present & I(1 << k)) != I(0));
+      layer.present = (layer.present & !lanes) | here;
+      if (none(here)) continue;
+      const float* const parts =
+          job_->part + k * Row::most_lanes * Row::of_a_ray * Row::part_fields;
+      F part[Row::part_fields];
+      if (layer.has_light && !layer.has_cells) {
+        load_records<Row::part_fields>(parts, at, part);
+      } else {
+        load_fields<Row::cell_fields>(parts, at, part);
+      }
+      M shown = here;
+      CubicBernstein<F> gradient[3], magnitude;
+      const M in_cells = layer.has_cells ? here & (part[Row::part_kind] == F(Row::cell)) : M(false);
+      typename CellLoads<N>::Ways ways;
+      if (any(in_cells)) {
+        for (int a = 0; a < 3; ++a) {
+          ways.cell[a] = convert<std::int32_t>(part[Row::place + a]);
+          ways.entry[a] = part[Row::entry_in_cell + a];
+          ways.exit[a] = part[Row::exit_in_cell + a];
+        }
+        shown = load_cells(layer, in_cells, ways, part, waits) | (here & !in_cells);
+        layer.present = layer.present & !(here & !shown);
+        if (none(shown)) continue;
+      }
+      begin(shown, part, layer);
+      if (!layer.has_light) continue;
+      if (any(here & !in_cells)) {
+        if (layer.has_cells) load_records<Row::part_fields>(parts, at, part);
+        for (int b = 0; b < 4; ++b) {
+          for (int c = 0; c < 3; ++c) gradient[c].b[b] = part[Row::gradient + 4 * c + b];
+          magnitude.b[b] = part[Row::magnitude + b];
+        }
+      }
+      const M lit = shown & in_cells;
+      if (any(lit)) layer.cells.gradients(lit, ways, gradient, magnitude);
+      waits = waits | layer.light.begin(shown, gradient, magnitude, entry, length_);
+    }
+    M absent = lanes & !waits;
+    for (int k = 0; k < layers_; ++k) absent = absent & !layer_[k].present;
+    if (any(absent)) leave_out(absent);
+    if (any(waits)) wait_for_caller(waits & lanes);
+  }
+
+  /// Loads data of cells into their parts. Returns the lanes in which they may absorb; adds those
+  /// that are not for lanes to `waits`.
+  [[gnu::noinline]] M load_cells(Layer& layer, M lanes, const typename CellLoads<N>::Ways& ways,
+                                 F* part, M& waits) const noexcept {
+    CubicBernstein<F> data;
+    F rounding;
+    layer.cells.data(lanes, ways, data, rounding);
+    // Vacuum: one corner that is NaN makes all of it so.
+    const M filled = lanes & !is_nan(data.b[0] + data.b[3]);
+    for (int b = 0; b < 4; ++b) {
+      part[Row::data + b] = select(lanes, select(filled, data.b[b], F(0)), part[Row::data + b]);
+    }
+    part[Row::rounding] = select(lanes, rounding, part[Row::rounding]);
+    const F least = data.hull_min() - rounding, most = data.hull_max() + rounding;
+    M found(false);
+    layer.transfers.begin(lanes, convert<std::int32_t>(part[Row::function]), M(false));
+    layer.transfers.for_each(filled, [&](const BinnedTransfer& transfer, M same) noexcept {
+      M jumps;
+      const M absorbs = may_absorb(transfer, same, least, most, jumps);
+      found = found | absorbs;
+      waits = waits | jumps | (absorbs & !(F(2) * rounding < F(transfer.narrowest)));
+    });
+    return found;
+  }
+
+  /// Nothing of the lanes' rows absorbs after all.
+  void leave_out(M lanes) noexcept {
+    pending_ = pending_ & !lanes;
+    const F error = largest_color_ * min(left_out_ * length_, F(1));
+    fold_.budget.spend(select(lanes, length_, F(0)), F(0), fold_.transparency(),
+                       select(lanes, error * F(1 + 8 * rounding_unit<float>), F(0)));
+  }
+
+  /// The first fields of parts.
+  template <int Fields>
+  static void load_fields(const float* parts, I at, F* part) noexcept {
+    static_assert(Fields % 4 == 0 && Row::part_fields % 4 == 0);
+    // Records of four floats.
+    const I first = at * I(Row::part_fields / 4);
+    for (int f = 0; f < Fields; f += 4) load_records<4>(parts, first + I(f / 4), part + f);
+  }
+
+  /// Begins a layer's span.
+  void begin(M lanes, const F* part, Layer& layer) noexcept {
+    SpanLanes<float, N>& span = layer.span;
+    const M constant = lanes & (part[Row::part_kind] == F(Row::constant));
+    for (int b = 0; b < 4; ++b) {
+      span.data.b[b] = select(lanes, select(constant, F(0), part[Row::data + b]), span.data.b[b]);
+    }
+    span.rounding = select(lanes, part[Row::rounding], span.rounding);
+    span.length = select(lanes, length_, span.length);
+    span.from = select(lanes, F(0), span.from);
+    span.begin(lanes);
+    layer.transfers.begin(lanes, convert<std::int32_t>(part[Row::function]), constant);
+    // What was known is of another function.
+    const F far(BinnedTransfer::far), nothing(0);
+    const M changing = lanes & !constant;
+    span.extinction.lower = select(changing, far, span.extinction.lower);
+    span.extinction.upper = select(changing, -far, span.extinction.upper);
+    span.color.lower = select(changing, far, span.color.lower);
+    span.color.upper = select(changing, -far, span.color.upper);
+    if (none(constant)) return;
+    const F extinction = part[Row::data];
+    const ExtinctionInterval<F> of_material{-far,       far,     extinction, nothing,
+                                            extinction, nothing, nothing,    nothing};
+    span.extinction = select(constant, of_material, span.extinction);
+    const Rgb<F> color{part[Row::data + 1], part[Row::data + 2], part[Row::data + 3]};
+    span.color = select(constant, ColorInterval<F>{-far, far, color, {nothing, nothing, nothing}},
+                        span.color);
+  }
+
+  /// Meets what has no length, or is not seen.
+  [[gnu::noinline]] void meet(M lanes, I kind, const F (&head)[Row::head_fields]) noexcept {
+    if (none(lanes)) return;
+    const auto is = [&](int one) noexcept { return lanes & (kind == I(one)); };
+    const F opacity = head[Row::opacity], transparency = fold_.transparency();
+    const M absent = is(Row::absent), surface = is(Row::surface), marks = is(Row::mark),
+            doubts = is(Row::doubt);
+    const I mark = convert<std::int32_t>(head[Row::mark_number]);
+    F seen = transparency;
+    for (unsigned left = bits(marks | doubts); left != 0; left &= left - 1) {
+      const int l = __builtin_ctz(left);
+      float& at_mark = at_mark_[mark[l]][l];
+      if (marks[l]) {
+        at_mark = transparency[l];
+      } else {
+        seen = select(M::from_bits(1u << l), F(at_mark), seen);
+      }
+    }
+    F error = min(opacity, F(1));
+    error = select(absent, min(left_out_ * length_, F(1)), error);
+    error = select(surface, min(head[Row::error] + F(8 * rounding_unit<float>), F(1)), error);
+    error = select(marks, F(0), error);
+    const F through = select(surface, opacity, F(0));
+    fold_.budget.spend(
+        select(absent, length_, F(0)), through, seen,
+        select(lanes, largest_color_ * error * F(1 + 8 * rounding_unit<float>), F(0)));
+    if (any(surface)) {
+      // Of an opaque one everything is seen.
+      const F depth = -log(max(F(1) - opacity, F(smallest_normal<float>)));
+      fold_.add(surface,
+                SegmentResult<F>{depth,
+                                 opacity,
+                                 F(1) - opacity,
+                                 {opacity * head[Row::color], opacity * head[Row::color + 1],
+                                  opacity * head[Row::color + 2]}});
+      pieces_ += select(surface, I(1), I(0));
+    }
+    retire(lanes);
+  }
+
+  /// The next pieces of the lanes' rows.
+  [[gnu::flatten]] void integrate(M on) noexcept {
+    const F ahead = F(1) - from_;
+    F place = min(cap_, F(1));
+    M found = on;
+    for (int k = 0; k < layers_; ++k) {
+      Layer& layer = layer_[k];
+      const M here = on & layer.present;
+      if (none(here)) continue;
+      layer.span.cap = F(1);
+      begin_piece(layer.span, layer.transfers, here, layer.piece);
+      found = found & (layer.piece.end.found | !here);
+      place = select(here, min(place, layer.piece.place), place);
+      if (!layer.has_light) continue;
+      const F kink = layer.light.kink();
+      const M before = here & (kink > from_) & (kink < F(1));
+      place = select(before, min(place, (kink - from_) / select(before, ahead, F(1))), place);
+    }
+    const F to = min(from_ + ahead * place, F(1));
+    tried_ += select(on, I(1), I(0));
+    Sum sum;
+    for (int k = 0; k < layers_; ++k) {
+      Layer& layer = layer_[k];
+      const M here = on & layer.present;
+      if (any(here)) measure(layer, here, place, to, sum);
+    }
+    const F depth = sum.depth;
+    SegmentResult<F> s = segment_of_depth(depth, Rgb<F>{});
+    const F length = ahead * place * length_;
+    const F left = left_ - from_ * length_;
+    fold_.budget.set_remaining_length(select(on, left, fold_.budget.remaining_length()));
+    const F transparency = fold_.transparency(), seen = transparency * s.opacity;
+    // What is off whatever the color: as SpanPiece::add_up_rounding().
+    const F range = min(sum.range(), F(2) * largest_color_);
+    const F opacity_rounding =
+        F(32 * rounding_unit<float>) * s.opacity +
+        min(select(sum.depth_error <= F(1), F(2) * sum.depth_error * s.transparency, F(1)), F(1));
+    const F rounding =
+        s.opacity * (F(32 * rounding_unit<float>) * largest_color_ + sum.color_rounding) +
+        largest_color_ * opacity_rounding + range * min(sum.depth_error, F(1)) +
+        largest_color_ * min(left_out_ * length, F(1));
+    const F linear = transparency * rounding + seen * sum.color_error;
+    const typename RayBudget<F>::SpanShare shares = fold_.budget.span_share(length, s.opacity);
+    const F allowed = shares.sum();
+    const M affordable = found & (linear <= F(0.6f) * allowed);
+
+    // The means of layers without light.
+    const F of_means = seen * (range * mean_color_bound(depth));
+    const M by_means = affordable & (!sum.lit) & (linear + of_means <= allowed);
+    const F largest = sampled_.largest_variance(fold_.budget, linear, s.opacity, length, left);
+    const NodeDeviations<N> deviations(range, sum.turns, sum.sharpness, depth);
+    const typename LikeErrors<F>::Signs signs = sum.signs(range);
+    const auto growth = [&](F deviation) noexcept {
+      return max(like_.variance_with(signs, deviation) - sampled_.variance(), F(0));
+    };
+    const F of_three = seen * deviations.by_three, of_six = seen * deviations.by_six;
+    const F variance = growth(of_six), variance_by_three = growth(of_three);
+    const M by_three = affordable & (!by_means) & (variance_by_three <= largest);
+    const M by_six = affordable & (!by_means) & (!by_three) & (variance <= largest);
+    const M take = by_means | by_three | by_six;
+    const M rest = on & !take;
+    if (any(rest)) {
+      const F half = F(0.5f) * place;
+      // Light may turn in a small part of a row, and a table be narrow.
+      const M halve = rest & affordable & (tried_ < I(most_pieces)) &
+                      (ahead * half >= F(narrowest)) & (variance <= F(1e6f) * largest);
+      cap_ = select(halve, half, cap_);
+      wait_for_caller(rest & !halve);
+    }
+    if (none(take)) return;
+    Rgb<F> color = sum.color();
+    if (any(by_three)) color = select_color(by_three, nodes_color<3>(by_three, length), color);
+    if (any(by_six)) color = select_color(by_six, nodes_color<6>(by_six, length), color);
+    s.radiance = s.opacity * color;
+    fold_.add(take, s);
+    const M by_nodes = by_three | by_six;
+    if (any(by_nodes)) {
+      sampled_.charge(by_nodes, fold_.budget, select(by_six, variance, variance_by_three), linear,
+                      s.opacity, length, left, transparency);
+      like_.add(by_nodes, signs, select(by_six, of_six, of_three));
+    }
+    fold_.budget.spend(select(by_means, length, F(0)), shares,
+                       select(by_means, linear + of_means, F(0)));
+    pieces_ += select(take, I(1), I(0));
+    panels_ += select(by_nodes, I(1), I(0));
+    proved_ = proved_ & !by_nodes;
+    go_past(take, place, to);
+    retire(take);
+  }
+
+  /// What the layers of a piece are together.
+  struct Sum {
+    F depth{0}, depth_error{0};
+    F color_rounding{0};  ///< the largest one of any layer
+    F color_error{0};     ///< likewise, of what light and kinks of tables are off by
+    Rgb<F> source{F(0), F(0), F(0)};
+    Rgb<F> lower{F(1e30f), F(1e30f), F(1e30f)}, upper{F(-1e30f), F(-1e30f), F(-1e30f)};
+    F own_range{0};  ///< of a layer that is alone
+    I layers{0};
+    F turns{1}, sharpness{0};
+    M lit{false};
+
+    F range() const noexcept {
+      const F apart = max(largest_component(upper - lower), F(0));
+      return select(layers == I(1), min(own_range, apart), apart);
+    }
+    Rgb<F> color() const noexcept {
+      const M shines = depth > F(0);
+      return select(shines, F(1) / select(shines, depth, F(1)), F(0)) * source;
+    }
+    typename LikeErrors<F>::Signs signs(F range) const noexcept {
+      const F feature[LikeErrors<F>::features] = {F(1) / turns, largest_component(upper),
+                                                  largest_component(lower), range};
+      return LikeErrors<F>::signs(feature);
+    }
+  };
+
+  /// Measures the piece of a layer up to `place` of what is left, `to` of the row.
+  [[gnu::noinline]] void measure(Layer& layer, M here, F place, F to, Sum& sum) noexcept {
+    SpanPiece<float, N>& piece = layer.piece;
+    piece.capped = piece.capped | (place < piece.place);
+    piece.crosses = piece.crosses & !(place < piece.place);
+    piece.place = place;
+    finish_piece(layer.span, layer.transfers, here, place_error_, largest_color_, piece);
+    const Rgb<F> mean = color_at(
+        layer.transfers, clamp(piece.seen.value, piece.seen.color_lower, piece.seen.color_upper),
+        here, layer.span.color);
+    const F change = min(piece.spread.range, piece.spread.slope * range_of(piece.seen));
+    Rgb<F> lower{max(mean.r - change, F(0)), max(mean.g - change, F(0)),
+                 max(mean.b - change, F(0))};
+    Rgb<F> upper{mean.r + change, mean.g + change, mean.b + change};
+    F own_range = change, color_error = piece.spread.kinks;
+    if (layer.has_light) {
+      if (layer.light.has_factor()) {
+        layer.light.weaken(piece, from_, to, layer.span, largest_color_);
+      }
+      layer.lit = layer.light.measure(piece, from_, to, layer.transfers);
+      const LightOfPiece<N>& lit = layer.lit;
+      lower = lit.bounds.lower.apply(lower);
+      upper = lit.bounds.upper.apply(upper);
+      own_range = lit.range;
+      color_error = lit.color_error;
+      sum.turns = select(here, max(sum.turns, lit.turns), sum.turns);
+      sum.sharpness = select(here, max(sum.sharpness, lit.sharpness), sum.sharpness);
+      sum.lit = sum.lit | here;
+    }
+    // Without extinction there is no color.
+    const F depth = select(here, piece.seen.depth, F(0));
+    sum.depth += depth;
+    sum.depth_error += select(here, piece.depth_error, F(0));
+    const M shines = here & ((depth > F(0)) | (piece.depth_error > F(0)));
+    const auto extend = [&](F& low, F& high, F least, F most) noexcept {
+      low = select(shines, min(low, least), low);
+      high = select(shines, max(high, most), high);
+    };
+    extend(sum.lower.r, sum.upper.r, lower.r, upper.r);
+    extend(sum.lower.g, sum.upper.g, lower.g, upper.g);
+    extend(sum.lower.b, sum.upper.b, lower.b, upper.b);
+    sum.layers += select(shines, I(1), I(0));
+    sum.own_range = select(shines, max(sum.own_range, own_range), sum.own_range);
+    sum.color_rounding =
+        select(here, max(sum.color_rounding, piece.color_rounding), sum.color_rounding);
+    sum.color_error = select(shines, max(sum.color_error, color_error), sum.color_error);
+    sum.source.r += select(here, depth * mean.r, F(0));
+    sum.source.g += select(here, depth * mean.g, F(0));
+    sum.source.b += select(here, depth * mean.b, F(0));
+  }
+
+  /// The color of pieces by Nodes Gauss nodes.
+  template <int Nodes>
+  [[gnu::noinline]] Rgb<F> nodes_color(M lanes, F length) noexcept {
+    const detail::PanelNodes<Nodes, F> nodes(length, [&](F u) noexcept {
+      F extinction(0);
+      Rgb<F> source{F(0), F(0), F(0)};
+      for (int k = 0; k < layers_; ++k) {
+        Layer& layer = layer_[k];
+        const M here = lanes & layer.present;
+        if (none(here)) continue;
+        const Material<F> own = material(layer, here, u);
+        const F absorbs = select(here, own.extinction, F(0));
+        extinction += absorbs;
+        source.r += select(here, absorbs * own.color.r, F(0));
+        source.g += select(here, absorbs * own.color.g, F(0));
+        source.b += select(here, absorbs * own.color.b, F(0));
+      }
+      const M shines = extinction >= F(smallest_normal<float>);
+      const F weight = select(shines, F(1) / select(shines, extinction, F(1)), F(0));
+      return Material<F>{select(shines, extinction, F(0)), weight * source};
+    });
+    return detail::panel_color(nodes);
+  }
+  static Material<F> material(Layer& layer, M here, F u) noexcept {
+    if (layer.has_light) {
+      return layer.light.material(layer.lit, layer.piece, layer.span, u, here, layer.transfers,
+                                  layer.span.color);
+    }
+    const SpanPiece<float, N>& piece = layer.piece;
+    const ExtinctionInterval<F>& interval = layer.span.extinction;
+    const F value = evaluate(piece.parts.front, u);
+    const F extinction = interval.at_lower + interval.slope * (value - interval.lower);
+    return {max(extinction, F(0)),
+            color_at(layer.transfers, clamp(value, piece.seen.color_lower, piece.seen.color_upper),
+                     here, layer.span.color)};
+  }
+  static Rgb<F> select_color(M lanes, const Rgb<F>& a, const Rgb<F>& b) noexcept {
+    return {select(lanes, a.r, b.r), select(lanes, a.g, b.g), select(lanes, a.b, b.b)};
+  }
+
+  /// The lanes' pieces were taken; where one was halved, its other half comes next.
+  void go_past(M take, F place, F to) noexcept {
+    for (int k = 0; k < layers_; ++k) {
+      Layer& layer = layer_[k];
+      const M here = take & layer.present;
+      if (none(here)) continue;
+      layer.span.go_past(here, layer.piece, layer.transfers);
+      if (layer.has_light) layer.light.go_past(here, to);
+    }
+    const F left = F(1) - place;
+    const M halved = take & (cap_ < F(1)) & (place >= cap_) & (place < left);
+    cap_ = select(take, select(halved, place / select(halved, left, F(1)), F(1)), cap_);
+    from_ = select(take, to, from_);
+    pending_ = pending_ & !(take & (place >= F(1)));
+  }
+
+  /// Something was added to the lanes' rays: ends those that no longer matter.
+  void retire(M lanes) noexcept {
+    trace_.note(lanes, fold_);
+    const M done = fold_.cut_off(lanes);
+    alive_ = alive_ & !done;
+    pending_ = pending_ & !done;
+    waits_ = waits_ & !done;
+  }
+
+  void wait_for_caller(M lanes) noexcept {
+    waits_ = waits_ | lanes;
+    pending_ = pending_ & !lanes;
+  }
+
+  /// Says what is left of the rows that wait for the caller, and what it may cost.
+  void ask_caller() noexcept {
+    const F length = (F(1) - from_) * length_;
+    fold_.budget.set_remaining_length(
+        select(waits_, left_ - from_ * length_, fold_.budget.remaining_length()));
+    const F transparency = fold_.transparency();
+    const F flat = fold_.budget.allowance(length, F(0), transparency),
+            all = fold_.budget.allowance(length, F(1), transparency);
+    for (unsigned left = bits(waits_); left != 0; left &= left - 1) {
+      const int l = __builtin_ctz(left);
+      job_->from[l] = static_cast<double>(from_[l]);
+      job_->allowance_flat[l] = static_cast<double>(flat[l]);
+      job_->allowance_per_opacity[l] = static_cast<double>(all[l] - flat[l]);
+    }
+  }
+
+  /// Takes what the caller has found of the rows that waited.
+  void take_handed() noexcept {
+    if (none(waits_)) return;
+    const M lanes = waits_;
+    HandedBack<N> found;
+    unsigned proved = 0;
+    for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
+      const int l = __builtin_ctz(left);
+      found.set(l, job_->handed[l]);
+      if (job_->handed[l].proved != 0) proved |= 1u << l;
+    }
+    fold_.budget.set_remaining_length(
+        select(lanes, left_ - from_ * length_, fold_.budget.remaining_length()));
+    fold_.add(found, select(lanes, (F(1) - from_) * length_, F(0)));
+    by_caller_ += select(lanes, I(1), I(0));
+    proved_ = proved_ & (M::from_bits(proved) | !lanes);
+    waits_ = M(false);
+    retire(lanes);
+  }
+
+  int layers_;
+  bool depth_;
+  F largest_color_;
+  PellucidLayeredJob* job_ = nullptr;
+  union {
+    Layer layer_[Row::most_layers];
+  };
+
+  M alive_{false};    ///< rays that are not through
+  M pending_{false};  ///< lanes that work on a row
+  M waits_{false};    ///< lanes that wait for the caller
+  I next_{0}, end_{0};
+
+  // Of the lanes' rows.
+  F length_{1}, left_{0}, place_error_{0}, left_out_{0};
+  F from_{0};   ///< the share that is done
+  F cap_{1};    ///< where the next piece ends at the latest, of what is left
+  I tried_{0};  ///< pieces
+  float at_mark_[Row::most_marks][N] = {};
+
+  SampledErrors<F> sampled_;
+  LikeErrors<F> like_;
+  PacketFold<N> fold_;
+  OpacityTrace<N> trace_;
+  M proved_{true};
+  I rows_{0}, pieces_{0}, panels_{0}, by_caller_{0};
+};
+
+}  // namespace pellucid
+#endif

@@ -1,0 +1,513 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "layered_packets.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <new>
+#include <utility>
+
+#include "grid/grid_light.h"
+#include "grid/packet_tracer.h"
+#include "layer_merge.h"
+#include "medium_parts.h"
+#include "packet_setup.h"
+#include "pellucid/render/multivariate_integrator.h"
+
+namespace pellucid {
+namespace {
+
+using Row = PellucidLayerRow;
+constexpr float unit = rounding_unit<float>;
+
+float above(double x) {
+  return static_cast<float>(x) * (1 + 2 * unit);
+}
+
+bool is_one_table(const MultivariateTransfer<double>& function) {
+  return function.gaussians.count == 0 && function.tables == 1 && function.channels == 1;
+}
+
+/// Whether packets know the factor of a layer's extinction, if it has one.
+bool has_known_factor(const LayerLook& look) {
+  if (look.extinction_factor() == nullptr) return true;
+  const auto* const content = std::get_if<VolumeContent>(&look.layer().content);
+  const auto& factor = look.layer().gradient_opacity;
+  return content != nullptr && factor && look.value_factor() == nullptr &&
+         suits_single(*look.extinction_factor(), factor->largest_factor(),
+                      steepest_gradient(look, *content->volume));
+}
+
+/// The largest magnitude of a layer's values that matters to its functions.
+double largest_of(const PiecewiseLinear<double>& table) {
+  return std::max(std::fabs(table.value[0]), std::fabs(table.value[table.count - 1]));
+}
+
+float largest_size(const CubicBernstein<double>& f) {
+  return static_cast<float>(std::max(std::fabs(f.hull_min()), std::fabs(f.hull_max())));
+}
+
+/// Memory of a packet's state.
+class AlignedBytes {
+ public:
+  explicit AlignedBytes(std::size_t size) : bytes_(::operator new(size, alignment)) {}
+  ~AlignedBytes() { ::operator delete(bytes_, alignment); }
+  AlignedBytes(const AlignedBytes&) = delete;
+  AlignedBytes& operator=(const AlignedBytes&) = delete;
+  void* get() const { return bytes_; }
+
+ private:
+  static constexpr std::align_val_t alignment{64};
+  void* bytes_;
+};
+
+}  // namespace
+
+std::unique_ptr<const LayeredPackets> LayeredPackets::make(
+    const std::vector<ClippedLayer>& layers, const std::vector<LightSource<double>>& lights,
+    const RayTolerance& wanted, bool depth) {
+  Kernel kernel = nullptr;
+#if PELLUCID_HAS_PACKETS
+  const InstructionSet set = packet_instruction_set(
+      layers.empty() ? std::nullopt : layers[0].setup->setting().instruction_set);
+  kernel = entry_of(set, PELLUCID_ENTRIES(pellucid_integrate_layers));
+#endif
+  if (kernel == nullptr || layers.empty() || wanted.grade == Grade::proved ||
+      wanted.precision != Precision::automatic || wanted.tolerance < least_packet_tolerance ||
+      layers.size() > std::size_t{Row::most_layers} ||
+      lights.size() > std::size_t{PacketLight::most_lights}) {
+    return nullptr;
+  }
+  auto result =
+      std::unique_ptr<LayeredPackets>(new LayeredPackets(layers, lights, wanted, depth, kernel));
+  const bool any = std::ranges::any_of(result->seen_, [](const Seen& one) { return one.in_lanes; });
+  if (!any || result->marks_ > Row::most_marks) return nullptr;
+  return result;
+}
+
+LayeredPackets::LayeredPackets(const std::vector<ClippedLayer>& layers,
+                               const std::vector<LightSource<double>>& lights,
+                               const RayTolerance& wanted, bool depth, Kernel kernel)
+    : layers_(layers), lights_(lights), wanted_(wanted), kernel_(kernel) {
+  std::vector<Vec3<double>> corners;
+  for (const ClippedLayer& layer : layers) {
+    for (const Vec3<double>& corner : world_corners(layer.setup->layer())) {
+      corners.push_back(corner);
+    }
+  }
+  PacketLight all;
+  origin_ = place_lights(corners, lights, all);
+  double largest_extinction = 0;
+  for (const ClippedLayer& layer : layers) {
+    add(layer, &all);
+    largest_extinction += layer.setup->largest_extinction();
+  }
+  for (const BinnedTransferStorage& function : functions_) function_.push_back(&function.view());
+  for (const Seen& one : seen_) {
+    light_.push_back(one.light ? &*one.light : nullptr);
+    grid_.push_back(one.in_lanes && one.source->cells() != nullptr ? &one.grid : nullptr);
+  }
+  job_.layers = static_cast<std::int32_t>(layers.size());
+  job_.functions = function_.data();
+  job_.light = light_.data();
+  job_.grid = grid_.data();
+  job_.largest_color = std::max(wanted.largest_color, 1.0);
+  // A surface is opaque whatever its length.
+  job_.largest_extinction = marks_ > 0 ? 1e30 : std::min(largest_extinction * 1.0001, 1e30);
+  job_.depth = depth ? 1 : 0;
+  job_.step = PellucidLayeredJob::size;
+  kernel_(&job_);
+}
+
+void LayeredPackets::add(const ClippedLayer& layer, const PacketLight* lights) {
+  Seen& one = seen_.emplace_back();
+  one.source = &layer.setup->source();
+  one.first_function = static_cast<int>(functions_.size());
+  const LayerLook& look = one.source->look();
+  if (look.has_surfaces()) marks_ += static_cast<int>(look.isosurfaces().size()) + 1;
+  one.in_lanes =
+      has_known_factor(look) && std::ranges::all_of(one.source->functions(), is_one_table);
+  const Reflection<double>* const r = look.reflection();
+  if (r != nullptr) {
+    // Where a light turns its edge to the direction half-way to a point light is no place that
+    // packets know.
+    const Volume* const cells = one.source->cells();
+    one.in_lanes = one.in_lanes && has_moderate_square(std::sqrt(r->flat_square)) &&
+                   (cells == nullptr || has_moderate_square(steepest_gradient(look, *cells))) &&
+                   has_moderate_square(static_cast<double>(lights->farthest)) &&
+                   !(lights->points > 0 && has_kink_in_highlight(in_single(*r)));
+  }
+  if (!one.in_lanes) return;
+  for (const MultivariateTransfer<double>& function : one.source->functions()) {
+    const PiecewiseLinear<double>& table = function.table[0].table;
+    functions_.emplace_back(table, largest_of(table));
+    one.function.push_back(&functions_.back().view());
+  }
+  if (one.source->cells() != nullptr) set_grid(*one.source->cells(), one.grid);
+  if (!look.is_lit()) return;
+  PacketLight& light = one.light.emplace();
+  if (r != nullptr) {
+    light = *lights;
+    light.reflection = in_single(*r);
+  } else {
+    // All colors as they are, and no normal that turns.
+    light.reflection.ambient = 1;
+    light.reflection.flat_square = 1e30f;
+  }
+  if (const Volume* const cells = one.source->cells()) {
+    light.of_field = r != nullptr && look.layer().shading->gradient == GradientKind::field ? 1 : 0;
+    for (int c = 0; c < 3; ++c) {
+      for (int a = 0; a < 3; ++a) {
+        light.world_gradient[c][a] =
+            static_cast<float>(cells->grid_from_world().matrix.column[c][a]);
+      }
+    }
+  }
+  if (const auto* const factor = look.extinction_factor()) {
+    const double largest = look.layer().gradient_opacity->largest_factor();
+    one.factor.emplace(
+        *factor, steepest_gradient(look, *std::get<VolumeContent>(look.layer().content).volume));
+    light.factor = &one.factor->view();
+    light.largest_factor = std::max(static_cast<float>(largest) * 1.0001f, 1.0f);
+  }
+}
+
+/// As many rays as a packet has lanes, and what lies ahead of them.
+class LayeredPackets::Packet {
+ public:
+  explicit Packet(const LayeredPackets& of)
+      : of_(of),
+        job_(of.job_),
+        state_(static_cast<std::size_t>(job_.state_size)),
+        lanes_(static_cast<std::size_t>(job_.lanes)),
+        layers_(of.layers_.size()),
+        head_(lanes_ * Row::of_a_ray * Row::head_fields),
+        part_(layers_ * Row::most_lanes * Row::of_a_ray * Row::part_fields),
+        row_(lanes_ * Row::of_a_ray),
+        again_(of.layers_, of.lights_, job_.largest_color, false),
+        sources_(sources_of(of)),
+        media_(sources_, of.lights_) {
+    for (std::size_t l = 0; l < lanes_; ++l) {
+      merge_.emplace_back(of.layers_, of.lights_, job_.largest_color, true);
+    }
+    mark_of_.resize(layers_);
+    int mark = 0;
+    for (std::size_t k = 0; k < layers_; ++k) {
+      mark_of_[k] = mark;
+      const LayerLook& look = of.seen_[k].source->look();
+      if (look.has_surfaces()) mark += static_cast<int>(look.isosurfaces().size()) + 1;
+    }
+    job_.state = state_.get();
+    job_.head = head_.data();
+    job_.part = part_.data();
+    job_.results = results_.data();
+  }
+
+  bool is_full() const { return used_ == lanes_; }
+  bool is_empty() const { return used_ == 0; }
+
+  /// Takes a part into a lane. Returns false if there is nothing on it.
+  bool take(const RayPart& part, double tolerance, std::size_t number) {
+    const Interval<double> inside = merge_[used_].start(part);
+    if (inside.empty()) return false;
+    const std::size_t l = used_++;
+    inside_[l] = inside;
+    ray_[l] = part.ray;
+    number_[l] = number;
+    tolerance_[l] = tolerance;
+    return true;
+  }
+
+  /// Follows the rays that were taken, and makes room for others.
+  void follow(std::vector<RayResult>& results, const std::stop_token& stop) {
+    begin();
+    for (bool goes_on = true; goes_on && !stop.stop_requested();) {
+      for (std::size_t l = 0; l < used_; ++l) {
+        if (job_.done[l] == 0) fill(l);
+      }
+      run(PellucidLayeredJob::go_on);
+      goes_on = false;
+      for (std::size_t l = 0; l < used_; ++l) {
+        goes_on = goes_on || job_.done[l] == 0;
+        if (job_.waits[l] != 0) integrate(l);
+      }
+    }
+    run(PellucidLayeredJob::finish);
+    for (std::size_t l = 0; l < used_; ++l) {
+      RayResult& to = results[number_[l]];
+      to = {};
+      read_result(results_[l], to);
+      if (of_.marks_ > 0) {
+        // Nobody knows on which side of a surface a place in binary32 is.
+        to.half = {};
+      } else {
+        to.half.range.begin += inside_[l].begin;
+        to.half.range.end += inside_[l].begin;
+      }
+    }
+    used_ = 0;
+  }
+
+ private:
+  static std::vector<const LayerSource*> sources_of(const LayeredPackets& of) {
+    std::vector<const LayerSource*> sources;
+    for (const Seen& one : of.seen_) sources.push_back(one.source);
+    return sources;
+  }
+
+  void run(PellucidLayeredJob::Step step) {
+    job_.step = step;
+    of_.kernel_(&job_);
+  }
+
+  void begin() {
+    job_.count = static_cast<std::int32_t>(used_);
+    for (std::size_t l = 0; l < std::size_t{Row::most_lanes}; ++l) {
+      const std::size_t from = l < used_ ? l : 0;
+      job_.tolerance[l] = static_cast<float>(tolerance_[from]);
+      // A little longer where there are surfaces: one may be at the very end.
+      job_.length[l] = above((inside_[from].end - inside_[from].begin) * (1 + 1e-6));
+      job_.to_eye[0][l] = -static_cast<float>(ray_[from].direction.x);
+      job_.to_eye[1][l] = -static_cast<float>(ray_[from].direction.y);
+      job_.to_eye[2][l] = -static_cast<float>(ray_[from].direction.z);
+      job_.next[l] = job_.end[l] = job_.done[l] = job_.waits[l] = 0;
+      ended_[l] = false;
+    }
+    run(PellucidLayeredJob::begin);
+  }
+
+  std::size_t slot(std::size_t lane, std::int32_t row) const {
+    return lane * Row::of_a_ray + static_cast<std::size_t>(row & (Row::of_a_ray - 1));
+  }
+
+  /// Finds as many rows of a ray as there is room for.
+  void fill(std::size_t lane) {
+    // A row that waits for the caller stays until it was integrated.
+    while (!ended_[lane] && job_.end[lane] - job_.next[lane] < Row::of_a_ray - 1) {
+      const std::size_t at = slot(lane, job_.end[lane]);
+      float* const head = &head_[at * Row::head_fields];
+      if (!merge_[lane].next(row_[at])) {
+        ended_[lane] = true;
+        head[Row::kind] = Row::end;
+        head[Row::length] = head[Row::left] = head[Row::left_out] = head[Row::position_error] = 0;
+        ++job_.end[lane];
+        return;
+      }
+      if (write(lane, at, row_[at], head)) ++job_.end[lane];
+    }
+  }
+
+  /// Writes a row. Returns false if there is nothing to be told.
+  bool write(std::size_t lane, std::size_t at, const MergedPart& part, float* head) {
+    head[Row::length] = static_cast<float>(part.range.end - part.range.begin);
+    head[Row::left] = static_cast<float>(inside_[lane].end - part.range.begin);
+    head[Row::position_error] = above(part.position_error);
+    head[Row::left_out] = above(part.left_out);
+    head[Row::present] = 0;
+    const auto set = [&](Row::Kind kind) { head[Row::kind] = static_cast<float>(kind); };
+    switch (part.kind) {
+      case MergedPart::Kind::unknown:
+        set(Row::unknown);
+        head[Row::opacity] = above(part.opacity);
+        return true;
+      case MergedPart::Kind::absent:
+        set(Row::absent);
+        return part.left_out > 0;
+      case MergedPart::Kind::surface:
+        set(Row::surface);
+        head[Row::opacity] = static_cast<float>(part.opacity);
+        head[Row::color] = static_cast<float>(part.color.r);
+        head[Row::color + 1] = static_cast<float>(part.color.g);
+        head[Row::color + 2] = static_cast<float>(part.color.b);
+        head[Row::error] = above(part.error);
+        return true;
+      case MergedPart::Kind::mark:
+      case MergedPart::Kind::doubt:
+        set(part.kind == MergedPart::Kind::mark ? Row::mark : Row::doubt);
+        head[Row::opacity] = above(part.opacity);
+        head[Row::mark_number] =
+            static_cast<float>(mark_of_[part.layer] + static_cast<int>(part.isosurface));
+        return true;
+      case MergedPart::Kind::medium:
+        break;
+    }
+    const Vec3<double> entry =
+        ray_[lane].origin + ray_[lane].direction * part.range.begin - of_.origin_;
+    head[Row::entry] = static_cast<float>(entry.x);
+    head[Row::entry + 1] = static_cast<float>(entry.y);
+    head[Row::entry + 2] = static_cast<float>(entry.z);
+    const LayerMerge& merge = merge_[lane];
+    int present = 0;
+    bool for_lanes = true;
+    for (std::size_t k = 0; k < layers_ && for_lanes; ++k) {
+      if (merge.key()[k] < 0) continue;
+      float* const to = &part_[(k * Row::most_lanes * Row::of_a_ray + at) * Row::part_fields];
+      bool absorbs = true;
+      for_lanes =
+          write_part(of_.seen_[k], merge.key()[k], *merge.stretches()[k], part, to, absorbs);
+      if (absorbs) present |= 1 << k;
+    }
+    if (for_lanes && present == 0) {
+      set(Row::absent);
+      return part.left_out > 0;
+    }
+    set(for_lanes ? Row::medium : Row::by_host);
+    head[Row::present] = static_cast<float>(present);
+    return true;
+  }
+
+  /// Writes what there is of a layer on a part. Returns false if it is not for lanes.
+  static bool write_part(const Seen& layer, int number, const LayerStretch& stretch,
+                         const MergedPart& part, float* to, bool& absorbs) {
+    if (!layer.in_lanes) return false;
+    to[Row::function] = static_cast<float>(layer.first_function + number);
+    if (stretch.by_cell) {
+      write_cell(stretch.cell, part.range, to);
+      return true;
+    }
+    const LayerLook& look = layer.source->look();
+    const CubicBernstein<double> data = channel_on(stretch, 0, part.range);
+    const double least = data.hull_min(), most = data.hull_max();
+    const bool is_constant = least == most && !(stretch.value_error[0] > 0);
+    to[Row::part_kind] = is_constant ? Row::constant : Row::curve;
+    to[Row::rounding] = 0;
+    if (is_constant) {
+      const Material<double> material =
+          layer.source->functions()[static_cast<std::size_t>(number)].table[0].table.evaluate(
+              least);
+      absorbs = material.extinction > 0;
+      to[Row::data] = static_cast<float>(material.extinction);
+      to[Row::data + 1] = static_cast<float>(material.color.r);
+      to[Row::data + 2] = static_cast<float>(material.color.g);
+      to[Row::data + 3] = static_cast<float>(material.color.b);
+    } else {
+      const BinnedTransfer& function = *layer.function[static_cast<std::size_t>(number)];
+      const float size = largest_size(data);
+      const float rounding = 8 * unit * size + 24 * unit * static_cast<float>(most - least) +
+                             above(stretch.value_error[0]);
+      if (!(size < 1e30f) || !(2 * rounding < function.narrowest)) return false;
+      bool jumps = false;
+      absorbs = may_absorb(function, true, static_cast<float>(least) - rounding,
+                           static_cast<float>(most) + rounding, jumps);
+      if (jumps) return false;
+      for (int b = 0; b < 4; ++b) to[Row::data + b] = static_cast<float>(data.b[b]);
+      to[Row::rounding] = rounding;
+    }
+    if (!absorbs || !look.is_lit()) return true;
+    return write_gradient(look, stretch, part, to);
+  }
+
+  static void write_cell(const StructuredWalk<double>::Step& cell, Interval<double> range,
+                         float* to) {
+    to[Row::part_kind] = Row::cell;
+    to[Row::rounding] = 0;
+    const double length = cell.t_end - cell.t_begin;
+    const double from = std::max((range.begin - cell.t_begin) / length, 0.0);
+    const double end = std::min((range.end - cell.t_begin) / length, 1.0);
+    for (int a = 0; a < 3; ++a) {
+      const double way = cell.exit[a] - cell.entry[a];
+      to[Row::place + a] = static_cast<float>(cell.cell[a]);
+      to[Row::entry_in_cell + a] = static_cast<float>(cell.entry[a] + from * way);
+      to[Row::exit_in_cell + a] =
+          static_cast<float>(end < 1 ? cell.entry[a] + end * way : cell.exit[a]);
+    }
+  }
+
+  static bool write_gradient(const LayerLook& look, const LayerStretch& stretch,
+                             const MergedPart& part, float* to) {
+    if (stretch.gradient_doubt > 0) return false;
+    const double length = stretch.end - stretch.begin;
+    const double from = std::max((part.range.begin - stretch.begin) / length, 0.0);
+    const double end = std::min((part.range.end - stretch.begin) / length, 1.0);
+    const bool whole = from <= 0 && end >= 1;
+    double largest = 0;
+    const auto put = [&](const CubicBernstein<double>& f, float* at) {
+      const CubicBernstein<double> there = whole ? f : restrict_to(f, from, end);
+      for (int b = 0; b < 4; ++b) {
+        at[b] = static_cast<float>(there.b[b]);
+        largest = std::max(largest, std::fabs(there.b[b]));
+      }
+    };
+    if (look.reflection() != nullptr) {
+      for (int c = 0; c < 3; ++c) put(stretch.gradient[c], to + Row::gradient + 4 * c);
+    } else {
+      std::fill_n(to + Row::gradient, 12, 0.0f);
+    }
+    if (look.extinction_factor() != nullptr) put(stretch.magnitude, to + Row::magnitude);
+    return has_moderate_square(largest);
+  }
+
+  /// Integrates what is left of a row that lanes are not for: the ray is followed anew there.
+  void integrate(std::size_t lane) {
+    const MergedPart& row = row_[slot(lane, job_.next[lane] - 1)];
+    const double length = row.range.end - row.range.begin;
+    const Interval<double> range{row.range.begin + job_.from[lane] * length, row.range.end};
+    double most = 0;
+    for (const Seen& one : of_.seen_) most += one.source->most_extinction();
+    const double opacity = std::min(most * (range.end - range.begin), 1.0);
+    RayTolerance wanted = of_.wanted_;
+    wanted.tolerance =
+        std::max(job_.allowance_per_opacity[lane] * opacity + job_.allowance_flat[lane], 1e-12);
+    const MultivariateTransfer<double> nothing{};
+    MultivariateRayIntegrator integrator(nothing, most, wanted, range.end - range.begin);
+    const auto inside = again_.start({ray_[lane], range});
+    double position_error = 0;
+    for (MergedPart part; !inside.empty() && again_.next(part);) {
+      // What has no length has rows of its own.
+      if (part.kind == MergedPart::Kind::absent) {
+        integrator.skip(part.range.end - part.range.begin, part.left_out);
+      }
+      if (part.kind != MergedPart::Kind::medium) continue;
+      position_error = std::max(position_error, part.position_error);
+      if (!media_.add(part, again_.key(), again_.stretches(), ray_[lane], integrator)) break;
+    }
+    // A layer that ends within what positions are off by may be missing.
+    const double between = 2 * most * std::max(position_error, row.position_error);
+    // Nothing is left, unless that was charged.
+    if (!integrator.done()) integrator.set_remaining_length(0);
+    const RayResult found = integrator.result();
+    job_.handed[lane] = {found.optical_depth,
+                         found.opacity,
+                         std::exp(-found.optical_depth),
+                         {found.radiance.r, found.radiance.g, found.radiance.b},
+                         found.error + job_.largest_color * std::min(between, 1.0),
+                         opacity,
+                         static_cast<std::uint8_t>(found.proved),
+                         1};
+  }
+
+  const LayeredPackets& of_;
+  PellucidLayeredJob job_;
+  AlignedBytes state_;
+  std::size_t lanes_, layers_, used_ = 0;
+  std::vector<float> head_, part_;
+  std::vector<MergedPart> row_;   ///< what rows were made from
+  std::deque<LayerMerge> merge_;  ///< of each lane
+  LayerMerge again_;              ///< of what lanes are not for
+  std::vector<const LayerSource*> sources_;
+  MediumParts media_;
+  std::vector<int> mark_of_;  ///< number of each layer's first mark
+  std::array<PellucidRayResult, Row::most_lanes> results_{};
+  // Of the lanes' rays.
+  std::array<Interval<double>, Row::most_lanes> inside_{};
+  std::array<Ray<double>, Row::most_lanes> ray_{};
+  std::array<std::size_t, Row::most_lanes> number_{};
+  std::array<double, Row::most_lanes> tolerance_{};
+  std::array<bool, Row::most_lanes> ended_{};
+};
+
+std::vector<RayResult> LayeredPackets::integrate(const std::vector<RayPart>& parts,
+                                                 const std::vector<double>& tolerances,
+                                                 const std::stop_token& stop) const {
+  std::vector<RayResult> results(parts.size(), missed_ray_result());
+  Packet packet(*this);
+  for (std::size_t i = 0; i < parts.size() && !stop.stop_requested(); ++i) {
+    if (packet.take(parts[i], tolerances[i], i) && packet.is_full()) packet.follow(results, stop);
+  }
+  if (!packet.is_empty()) packet.follow(results, stop);
+  return results;
+}
+
+}  // namespace pellucid

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "clipped_layer.h"
+#include "layer_stream.h"
+#include "pellucid/packet/layered_interface.h"
+#include "pellucid/packet/light.h"
+#include "pellucid/scene/binned_transfer_storage.h"
+#include "pellucid/simd/instruction_set.h"
+#include "ray_tracer.h"
+
+namespace pellucid {
+
+/// Follows rays through several layers in packets (packet/layers/layered_packet.h): what
+/// GeneralPath does, for layers of one variable, within estimates. Each ray's streams are merged
+/// one number at a time; what lies on it is integrated in lanes. What these cannot do is left to a
+/// MultivariateRayIntegrator, part by part. Safe to use from any thread.
+class LayeredPackets {
+ public:
+  /// Null where there are no packets for these layers or for such a tolerance. All that is given
+  /// must outlive the object.
+  static std::unique_ptr<const LayeredPackets> make(const std::vector<ClippedLayer>& layers,
+                                                    const std::vector<LightSource<double>>& lights,
+                                                    const RayTolerance& wanted, bool depth);
+
+  /// Returns what the parts gather, each off by at most the tolerance beside it; what clips'
+  /// positions are off by is not counted. Once `stop` is requested, results do not matter.
+  std::vector<RayResult> integrate(const std::vector<RayPart>& parts,
+                                   const std::vector<double>& tolerances,
+                                   const std::stop_token& stop) const;
+
+ private:
+  class Packet;
+  using Kernel = void (*)(PellucidLayeredJob*);
+
+  LayeredPackets(const std::vector<ClippedLayer>& layers,
+                 const std::vector<LightSource<double>>& lights, const RayTolerance& wanted,
+                 bool depth, Kernel kernel);
+  void add(const ClippedLayer& layer, const PacketLight* lights);
+
+  /// A layer as packets see it.
+  struct Seen {
+    const LayerSource* source = nullptr;
+    int first_function = 0;  ///< number of its first one
+    bool in_lanes = false;   ///< whether packets are for it at all
+    std::optional<BinnedTransferStorage> factor;
+    std::optional<PacketLight> light;
+    std::vector<const BinnedTransfer*> function;  ///< each of its functions
+    PellucidPacketJob grid{};                     ///< of the cells that its stretches tell
+  };
+
+  const std::vector<ClippedLayer>& layers_;
+  const std::vector<LightSource<double>>& lights_;
+  const RayTolerance wanted_;
+  Kernel kernel_;
+  std::deque<Seen> seen_;
+  std::deque<BinnedTransferStorage> functions_;
+  Vec3<double> origin_;  ///< of places in the packets' world
+  int marks_ = 0;
+  PellucidLayeredJob job_{};  ///< what all rays have in common
+  // As the job sees them.
+  std::vector<const void*> function_, light_;
+  std::vector<const PellucidPacketJob*> grid_;
+};
+
+}  // namespace pellucid

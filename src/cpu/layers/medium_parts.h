@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "bundle.h"
+#include "layer_merge.h"
+#include "lit_parts.h"
+
+namespace pellucid {
+
+class MultivariateRayIntegrator;
+
+/// Has a MultivariateRayIntegrator integrate the layers that are present on a part of a ray: one
+/// function of all of their channels (bundle.h), a sum of terms; where any of them has light or a
+/// factor of its extinction, lit panels take its place (lit_parts.h). Used by one thread.
+class MediumParts {
+ public:
+  /// Both must outlive the object.
+  MediumParts(const std::vector<const LayerSource*>& sources,
+              const std::vector<LightSource<double>>& lights)
+      : sources_(sources), parts_(lights), bundles_(sources) {}
+
+  /// `key`: LayerMerge::key(); `stretches`: of each layer that is present, the one that holds the
+  /// part. Returns false if there are more channels or Gaussians than the integrator takes: nobody
+  /// knows what comes behind.
+  bool add(const MergedPart& part, const std::vector<int>& key,
+           const std::vector<const LayerStretch*>& stretches, const Ray<double>& ray,
+           MultivariateRayIntegrator& integrator);
+
+ private:
+  bool add_unlit(const MergedPart& part, const std::vector<int>& key,
+                 const std::vector<const LayerStretch*>& stretches,
+                 MultivariateRayIntegrator& integrator);
+  const MultivariateTransfer<double>& function(std::size_t layer, int number) const {
+    return sources_[layer]->functions()[static_cast<std::size_t>(number)];
+  }
+
+  const std::vector<const LayerSource*>& sources_;
+  LitParts parts_;
+  Bundles bundles_;
+  const Bundle* bundle_ = nullptr;  ///< of the last part without light
+  Bundle::Span span_;
+};
+
+}  // namespace pellucid
