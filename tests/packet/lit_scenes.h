@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <random>
 #include <type_traits>
+#include <vector>
 
 #include "pellucid/cpu/render.h"
 #include "tests/scenes/makers.h"
@@ -27,6 +29,32 @@ inline Shading random_shading(std::mt19937& random) {
           1 + std::floor(40 * unit(random)),
           unit(random) < 0.5 ? GradientKind::smooth : GradientKind::field,
           unit(random) < 0.2 ? 0.0 : 0.05 * unit(random)};
+}
+
+/// Of gradients of data up to 200: none, few or many of them show.
+inline std::shared_ptr<const GradientOpacity> random_factor(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<GradientOpacity::Point> points;
+  double gradient = unit(random) < 0.5 ? 0 : 30 * unit(random);
+  for (int n = 0; n < 2 + static_cast<int>(4 * unit(random)); ++n) {
+    points.push_back({gradient, unit(random) < 0.3 ? 0 : 1.5 * unit(random)});
+    gradient += (unit(random) < 0.3 ? 3 : 60) * (0.01 + unit(random));
+  }
+  const auto unit_of_length =
+      unit(random) < 0.7 ? GradientOpacity::Unit::voxel : GradientOpacity::Unit::world;
+  return std::make_shared<const GradientOpacity>(points, unit_of_length);
+}
+
+/// Up to four of data up to 200, some of them opaque.
+inline std::vector<Isosurface> random_surfaces(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Isosurface> surfaces;
+  for (int n = 0; n < 1 + static_cast<int>(4 * unit(random)); ++n) {
+    // Between the values of integers, at them, and at control points.
+    const double value = unit(random) < 0.2 ? 30 + 40 * n : 30 + 40 * (n + unit(random));
+    surfaces.push_back({value, unit(random) < 0.2 ? 1 : 0.7 * unit(random), random_color(random)});
+  }
+  return surfaces;
 }
 
 template <class Value>

@@ -17,32 +17,6 @@
 namespace pellucid {
 namespace {
 
-/// Of gradients of data up to 200: none, few or many of them show.
-std::shared_ptr<const GradientOpacity> random_factor(std::mt19937& random) {
-  std::uniform_real_distribution<double> unit(0, 1);
-  std::vector<GradientOpacity::Point> points;
-  double gradient = unit(random) < 0.5 ? 0 : 30 * unit(random);
-  for (int n = 0; n < 2 + static_cast<int>(4 * unit(random)); ++n) {
-    points.push_back({gradient, unit(random) < 0.3 ? 0 : 1.5 * unit(random)});
-    gradient += (unit(random) < 0.3 ? 3 : 60) * (0.01 + unit(random));
-  }
-  const auto unit_of_length =
-      unit(random) < 0.7 ? GradientOpacity::Unit::voxel : GradientOpacity::Unit::world;
-  return std::make_shared<const GradientOpacity>(points, unit_of_length);
-}
-
-/// Up to four of data up to 200, some of them opaque.
-std::vector<Isosurface> random_surfaces(std::mt19937& random) {
-  std::uniform_real_distribution<double> unit(0, 1);
-  std::vector<Isosurface> surfaces;
-  for (int n = 0; n < 1 + static_cast<int>(4 * unit(random)); ++n) {
-    // Between the values of integers, at them, and at control points.
-    const double value = unit(random) < 0.2 ? 30 + 40 * n : 30 + 40 * (n + unit(random));
-    surfaces.push_back({value, unit(random) < 0.2 ? 1 : 0.7 * unit(random), random_color(random)});
-  }
-  return surfaces;
-}
-
 Scene random_scene(std::mt19937& random, int kind) {
   std::uniform_real_distribution<double> unit(0, 1);
   const auto color = [&] { return random_color(random); };

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Packets of several layers against the general path, which is in double and one ray at a time.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "tests/packet/instruction_sets.h"
+#include "tests/packet/lit_scenes.h"
+#include "tests/scenes/layer_makers.h"
+#include "tests/scenes/meshes.h"
+#include "tests/support/instruction_sets.h"
+
+namespace pellucid {
+namespace {
+
+/// Random layers of all kinds, whose data go up to 200.
+class RandomLayers {
+ public:
+  explicit RandomLayers(unsigned seed) : random_(seed) {}
+
+  Scene scene() {
+    Scene scene;
+    const int layers = 1 + static_cast<int>(3.5 * unit());
+    for (int n = 0; n < layers; ++n) scene.layers.push_back(layer(layers > 1));
+    if (unit() < 0.4) scene.clips = {clip()};
+    look_at_data(scene, random_);
+    return scene;
+  }
+
+ private:
+  double unit() { return std::uniform_real_distribution<double>(0, 1)(random_); }
+  double both() { return 2 * unit() - 1; }
+
+  scenes::TransferPointer function(double most) {
+    const auto color = [&] { return random_color(random_); };
+    scenes::Points points{{60, 0, color()}, {100, most * unit(), color()}};
+    if (unit() < 0.3) {
+      points.push_back({110, 0, color()});
+      points.push_back({150, 0, color()});
+      points.push_back({150, 0.5 * most, color()});
+    }
+    points.push_back({200, most * unit(), color()});
+    // Colors bend where extinctions do not.
+    if (unit() < 0.3) {
+      for (int i = 0; i < 5; ++i) {
+        const double share = (i + 1) / 6.0;
+        const TransferFunction::Point first = points.front(), second = points[1];
+        points.insert(points.begin() + 1 + i,
+                      {60 + 40 * share, second.extinction * share, color()});
+        points.back().color = first.color;
+      }
+    }
+    return scenes::transfer(points);
+  }
+
+  Clip clip() {
+    Clip result{ClipPlane{{0.3 * both(), 0.3 * both(), 0.3 * both()}, {both(), both(), both()}}};
+    if (unit() < 0.3) result.shape = ClipSphere{{0.5 * both(), 0.5 * both(), 0}, 0.3 + unit()};
+    if (unit() < 0.3) result.shape = ClipBox{{-0.5, -0.6, -2}, {0.7 * unit(), 2, 2}};
+    result.keep_inside = unit() < 0.6;
+    return result;
+  }
+
+  /// A mask of shells.
+  std::shared_ptr<const LabelMask> mask(const Volume& volume) {
+    Volume::Description description = volume.description();
+    description.name = "labels";
+    const auto labels = scenes::make_volume<std::uint8_t>(
+        description, [](int i, int j, int k) { return (i * i + 2 * j * j + k * k) / 40 % 4; });
+    std::vector<LabelMask::Choice> choices{{1, function(2)}, {3, function(1)}};
+    return std::make_shared<const LabelMask>(std::make_shared<const LabelVolume>(labels),
+                                             std::move(choices));
+  }
+
+  /// A grid of planes at uneven distances.
+  scenes::VolumePointer rectilinear() {
+    Volume::Description description = scenes::grid_description({9, 11, 8}, {0, 0, 0});
+    for (std::size_t a = 0; a < 3; ++a) {
+      double x = -1;
+      for (int i = 0; i < description.dimensions[a]; ++i) {
+        description.coordinates[a].push_back(x);
+        x += 0.1 + 0.25 * unit();
+      }
+    }
+    return scenes::make_volume<float>(description, [&](int i, int j, int k) {
+      return 100 + 90 * std::sin(0.7 * i + 0.3 * j) * std::cos(0.5 * k);
+    });
+  }
+
+  Layer mesh() {
+    const auto pointer = scenes::make_mesh(
+        unit() < 0.5 ? scenes::random_delaunay(60, static_cast<unsigned>(random_()))
+                     : scenes::box_of_cubes(3));
+    return {MeshContent{
+        scenes::on_mesh(pointer, {scenes::at_points(*pointer, "field",
+                                                    [](const Vec3<double>& p) {
+                                                      return 200 * scenes::wave(p.x, p.y, p.z);
+                                                    })}),
+        function(2)}};
+  }
+
+  Layer layer(bool has_others) {
+    const double kind = unit();
+    Layer result = scenes::labels();
+    bool has_gradient = false, is_volume = false;
+    if (kind < 0.55) {
+      const bool vacuum = unit() < 0.3;
+      const auto volume =
+          kind < 0.08 ? rectilinear()
+                      : any_volume(random_, static_cast<int>(4 * unit()), vacuum ? 0.01 : 0);
+      result = {VolumeContent{volume, function(3), nullptr}};
+      if (unit() < 0.3 || !has_others) {
+        std::get<VolumeContent>(result.content).mask = mask(*volume);
+      }
+      has_gradient = is_volume = true;
+    } else if (kind < 0.75) {
+      result = mesh();
+      has_gradient = true;
+    } else if (kind < 0.85) {
+      result = scenes::gaussians();
+    }
+    if (has_gradient) {
+      if (unit() < 0.5) result.shading = random_shading(random_);
+      if (is_volume && unit() < 0.25) result.gradient_opacity = random_factor(random_);
+      if (unit() < 0.2) result.isosurfaces = random_surfaces(random_);
+      if (unit() < 0.15) {
+        result.slices = {{{0.2 * both(), 0, 0.1}, {both(), both(), both()}, unit()}};
+      }
+    }
+    if (unit() < 0.5) result.transform = scenes::oblique();
+    if (unit() < 0.2) result.clips = {clip()};
+    return result;
+  }
+
+  std::mt19937 random_;
+};
+
+int number(const char* name, int otherwise) {
+  const char* const given = std::getenv(name);
+  return given != nullptr ? std::atoi(given) : otherwise;
+}
+
+/// PELLUCID_TEST_SCENES sets how many scenes there are, PELLUCID_TEST_SEED where they begin.
+TEST(LayerPackets, AreWithinWhatTheySayOfTheGeneralPath) {
+  if (no_packets()) GTEST_SKIP() << "this machine has none of the instruction sets of packets";
+  const int count = number("PELLUCID_TEST_SCENES", 40), first = number("PELLUCID_TEST_SEED", 1);
+  std::uint64_t by_caller = 0, pieces = 0;
+  std::size_t pixels = 0, over = 0, unknown = 0;
+  for (int n = first; n < first + count; ++n) {
+    SCOPED_TRACE(testing::Message() << "scene " << n);
+    Scene scene = RandomLayers(static_cast<unsigned>(n)).scene();
+    scene.integration.tolerance = 1e-6;
+    const Image truth = frame(scene, InstructionSet::scalar);
+    for (const InstructionSet set : packet_sets) {
+      if (!test::runs_here(set)) continue;
+      for (const double tolerance : {2e-2, 2e-3, 1e-4}) {
+        scene.integration.tolerance = tolerance;
+        RenderReport report;
+        const Image image = frame(scene, set, &report);
+        by_caller += report.spans.in_double;
+        pieces += report.spans.panels + report.spans.closed;
+        for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+          const auto said = static_cast<double>(image.error[i]);
+          const auto judge = static_cast<double>(truth.error[i]);
+          ++pixels;
+          if (!(judge <= 1e-5)) ++unknown;
+          if (judge <= 1e-5 && !(said <= tolerance * (1 + 1e-6))) ++over;
+          for (std::size_t c = 0; c < 4; ++c) {
+            ASSERT_NEAR(image.pixels[i][c], truth.pixels[i][c], said + judge + 1e-7)
+                << name_of(set) << ", tolerance " << tolerance << ", pixel " << i;
+          }
+        }
+      }
+    }
+  }
+  if (std::getenv("PELLUCID_TEST_SCENES") != nullptr) {
+    std::printf("%zu pixels, %zu over, %zu not judged; %llu of %llu pieces by the caller\n", pixels,
+                over, unknown, static_cast<unsigned long long>(by_caller),
+                static_cast<unsigned long long>(pieces));
+  }
+  EXPECT_LT(over, pixels / 200);
+  EXPECT_LT(unknown, pixels / 20);
+  // They are what is tested.
+  EXPECT_GT(pieces, 4 * by_caller);
+}
+
+TEST(LayerPackets, DoNotDependOnThreads) {
+  for (unsigned n = 100; n < 108; ++n) {
+    Scene scene = RandomLayers(n).scene();
+    scene.integration.tolerance = 1e-3;
+    const Image one = frame(scene, std::nullopt), two = frame(scene, std::nullopt, nullptr, 2);
+    EXPECT_EQ(one.pixels, two.pixels) << n;
+    EXPECT_EQ(one.error, two.error) << n;
+  }
+}
+
+}  // namespace
+}  // namespace pellucid
