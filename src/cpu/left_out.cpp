@@ -40,6 +40,10 @@ void GridLight::integrate(const StructuredWalk<double>::Step&, const Ray<double>
   throw left_out("what integrates lit cells");
 }
 
+bool LayeredPackets::suit(const LayerSetting&) {
+  return false;
+}
+
 std::unique_ptr<const LayeredPackets> LayeredPackets::make(const std::vector<ClippedLayer>&,
                                                            const std::vector<LightSource<double>>&,
                                                            const RayTolerance&, bool) {

@@ -69,14 +69,24 @@ bool fits_single(const Volume& volume) {
   return type != "u32" && type != "i32" && type != "f64";
 }
 
-bool suits_packets(const Volume& volume, double largest_extinction) {
+bool is_uniform(const Volume& volume) {
+  return volume.visit([](const auto& grid) {
+    return std::ranges::all_of(
+        grid.axis, [](const GridAxis<double>& axis) { return axis.plane_position == nullptr; });
+  });
+}
+
+bool suits_lanes(const Volume& volume, double largest_extinction) {
   return is_moderate(largest_value(volume)) && is_moderate(volume.voxel_size()) &&
          largest_extinction <= 1e12 && volume.visit([](const auto& grid) {
-           for (const GridAxis<double>& axis : grid.axis) {
-             if (axis.plane_position != nullptr || axis.values < 2) return false;
-           }
-           return 20.0 * grid.axis[0].values * grid.axis[1].values < 2e9;
+           const bool has_cells = std::ranges::all_of(
+               grid.axis, [](const GridAxis<double>& axis) { return axis.values >= 2; });
+           return has_cells && 20.0 * grid.axis[0].values * grid.axis[1].values < 2e9;
          });
+}
+
+bool suits_packets(const Volume& volume, double largest_extinction) {
+  return suits_lanes(volume, largest_extinction) && is_uniform(volume);
 }
 
 bool has_few_steps(const Volume& volume, double step) {

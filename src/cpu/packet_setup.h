@@ -35,9 +35,12 @@ inline bool is_moderate(double x) {
 /// Whether binary32 holds all values of the data's type.
 bool fits_single(const Volume& volume);
 
-/// Whether packets can go through the volume: uniform, two values along each axis at least, places
-/// near a block that an int can count, and numbers, extinctions among them, whose squares binary32
-/// has.
+/// Whether all planes of the volume's grid are equally far apart along each axis.
+bool is_uniform(const Volume& volume);
+/// Whether lanes can load the volume's cells: two values along each axis at least, places near a
+/// block that an int can count, and numbers, extinctions among them, whose squares binary32 has.
+bool suits_lanes(const Volume& volume, double largest_extinction);
+/// Whether packets can go through the volume: suits_lanes(), is_uniform().
 bool suits_packets(const Volume& volume, double largest_extinction);
 
 /// Whether no ray takes so many steps of this world length that an int cannot count them.

@@ -2,19 +2,25 @@
 #include "layer_setup.h"
 
 #include "device/device_layer.h"
+#include "layered_packets.h"
+#include "packet_setup.h"
 #include "threads.h"
 
 namespace pellucid {
 namespace {
 
 /// Null where the layer takes the general path.
-std::unique_ptr<const RayTracer> make_fast_tracer(const TracerTask& task) {
+std::unique_ptr<const RayTracer> make_fast_tracer(const TracerTask& task,
+                                                  const LayerSetting& setting) {
   const LayerContent& content = task.layer.content;
   if (auto surfaces = make_surface_tracer(task)) return surfaces;
   if (is_lit(task.layer) && !std::holds_alternative<VolumeContent>(content)) return nullptr;
   if (extinction_factor_of(task.layer) != nullptr) return nullptr;
   if (const auto* volume = std::get_if<VolumeContent>(&content)) {
-    return volume->mask ? nullptr : make_univariate_tracer(task);
+    if (volume->mask) return nullptr;
+    // Packets of single layers know uniform grids alone.
+    if (!is_uniform(*volume->volume) && LayeredPackets::suit(setting)) return nullptr;
+    return make_univariate_tracer(task);
   }
   if (std::holds_alternative<MeshContent>(content)) return make_mesh_tracer(task);
   if (std::holds_alternative<ChannelsContent>(content)) return make_multivariate_tracer(task);
@@ -45,7 +51,7 @@ LayerSetup::LayerSetup(const Layer& layer, const LayerSetting& setting, int thre
   options.instruction_set = setting_.instruction_set;
   options.gaussian_march = setting_.gaussian_march;
   fast_ = make_fast_tracer(
-      {layer_, setting_.integration, options, setting_.lights, setting_.wanted, threads});
+      {layer_, setting_.integration, options, setting_.lights, setting_.wanted, threads}, setting_);
   if (!fast_) make_source(parallel_for(threads));
 }
 

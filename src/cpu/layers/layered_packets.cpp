@@ -49,6 +49,17 @@ float largest_size(const CubicBernstein<double>& f) {
   return static_cast<float>(std::max(std::fabs(f.hull_min()), std::fabs(f.hull_max())));
 }
 
+using Kernel = void (*)(PellucidLayeredJob*);
+
+/// Null: there are no packets here.
+Kernel find_kernel([[maybe_unused]] std::optional<InstructionSet> wanted) {
+#if PELLUCID_HAS_PACKETS
+  return entry_of(packet_instruction_set(wanted), PELLUCID_ENTRIES(pellucid_integrate_layers));
+#else
+  return nullptr;
+#endif
+}
+
 /// Memory of a packet's state.
 class AlignedBytes {
  public:
@@ -65,21 +76,22 @@ class AlignedBytes {
 
 }  // namespace
 
+bool LayeredPackets::suit(const LayerSetting& setting) {
+  const RayTolerance& wanted = setting.wanted;
+  return find_kernel(setting.instruction_set) != nullptr && wanted.grade != Grade::proved &&
+         wanted.precision == Precision::automatic && wanted.tolerance >= least_packet_tolerance &&
+         setting.lights.size() <= std::size_t{PacketLight::most_lights} &&
+         setting.integration.method == Method::exact;
+}
+
 std::unique_ptr<const LayeredPackets> LayeredPackets::make(
     const std::vector<ClippedLayer>& layers, const std::vector<LightSource<double>>& lights,
     const RayTolerance& wanted, bool depth) {
-  Kernel kernel = nullptr;
-#if PELLUCID_HAS_PACKETS
-  const InstructionSet set = packet_instruction_set(
-      layers.empty() ? std::nullopt : layers[0].setup->setting().instruction_set);
-  kernel = entry_of(set, PELLUCID_ENTRIES(pellucid_integrate_layers));
-#endif
-  if (kernel == nullptr || layers.empty() || wanted.grade == Grade::proved ||
-      wanted.precision != Precision::automatic || wanted.tolerance < least_packet_tolerance ||
-      layers.size() > std::size_t{Row::most_layers} ||
-      lights.size() > std::size_t{PacketLight::most_lights}) {
+  if (layers.empty() || layers.size() > std::size_t{Row::most_layers} ||
+      !suit(layers[0].setup->setting())) {
     return nullptr;
   }
+  const Kernel kernel = find_kernel(layers[0].setup->setting().instruction_set);
   auto result =
       std::unique_ptr<LayeredPackets>(new LayeredPackets(layers, lights, wanted, depth, kernel));
   const bool any = std::ranges::any_of(result->seen_, [](const Seen& one) { return one.in_lanes; });

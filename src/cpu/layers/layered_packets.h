@@ -29,6 +29,9 @@ class LayeredPackets {
                                                     const std::vector<LightSource<double>>& lights,
                                                     const RayTolerance& wanted, bool depth);
 
+  /// Returns whether there are packets for a layer like this, with frames as its setting says.
+  static bool suit(const LayerSetting& setting);
+
   /// Returns what the parts gather, each off by at most the tolerance beside it; what clips'
   /// positions are off by is not counted. Once `stop` is requested, results do not matter.
   std::vector<RayResult> integrate(const std::vector<RayPart>& parts,

@@ -95,9 +95,10 @@ class VolumeSource : public LayerSource {
       }
     }
     visit_isosurfaces(classes_, records_, 0, look(), task);
-    // Surfaces are looked for in the data.
+    // Surfaces are looked for in the data. Lanes know gradients of uniform grids alone.
     in_cells_ = !look().has_surfaces() && fits_single(*content_.volume) &&
-                suits_packets(*content_.volume, most_extinction());
+                suits_lanes(*content_.volume, most_extinction()) &&
+                (!look().is_lit() || is_uniform(*content_.volume));
   }
 
   std::unique_ptr<LayerStream> stream(bool by_cells) const override;
