@@ -25,6 +25,11 @@ struct RayPart {
   Interval<double> range{0, std::numeric_limits<double>::infinity()};  ///< world arc length
 };
 
+/// Returns whether a part is all of its ray.
+inline bool is_whole(const RayPart& part) {
+  return part.range.begin <= 0 && part.range.end == std::numeric_limits<double>::infinity();
+}
+
 /// How rays are followed.
 struct TraceOptions {
   /// Of the tolerance, what is the part's: less than 1 where a ray has others.

@@ -8,9 +8,11 @@
 /// As packet/interface.h, for rays through a variable of a mesh.
 extern "C" {
 
-/// A ray in the world, its direction of length 1.
+/// A part of a ray in the world: its direction of length 1; between which arc lengths it is, the
+/// last one perhaps infinite.
 struct PellucidMeshRay {
   double origin[3], direction[3];
+  double begin, end;
 };
 
 /// A part of a span that the packets' rule is not good enough for.

@@ -150,9 +150,6 @@ class SceneTracer : public RayTracer {
   }
 
  private:
-  static bool is_whole(const RayPart& part) {
-    return part.range.begin <= 0 && part.range.end == infinity;
-  }
   bool is_sampled() const {
     return layers_[0].setup->setting().integration.method != Method::exact;
   }

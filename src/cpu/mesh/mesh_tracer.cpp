@@ -50,6 +50,9 @@ class MeshTracer : public RayTracer {
         wanted_(task.wanted),
         depth_(task.options.depth) {}
 
+  /// Single rays are followed from end to end.
+  bool keeps_to_ranges() const override { return kernel_ != nullptr; }
+
   std::vector<RayResult> trace(const std::vector<RayPart>& parts,
                                const TraceOptions& options) const override {
     std::vector<RayResult> results(parts.size());
@@ -98,7 +101,8 @@ class MeshTracer : public RayTracer {
     of_job.reserve(left.size());
     for (const std::size_t i : left) {
       const Vec3<double>&o = rays[i].ray.origin, &d = rays[i].ray.direction;
-      of_job.push_back({{o.x, o.y, o.z}, {d.x, d.y, d.z}});
+      const Interval<double>& range = rays[i].range;
+      of_job.push_back({{o.x, o.y, o.z}, {d.x, d.y, d.z}, std::max(range.begin, 0.0), range.end});
     }
     std::vector<PellucidRayResult> found(left.size());
     PellucidMeshJob job = job_;
@@ -157,6 +161,10 @@ class UnivariateMeshTracer : public MeshTracer {
     RayTolerance wanted = wanted_;
     wanted.tolerance *= options.share;
     for (const std::size_t i : left) {
+      if (!is_whole(rays[i])) {
+        results[i] = left_to_general_path();
+        continue;
+      }
       results[i] = integrate_mesh_ray(mesh_, fields_.view(), transfer_.tables(),
                                       hits.find(mesh_, rays[i].ray), wanted);
     }
@@ -165,6 +173,7 @@ class UnivariateMeshTracer : public MeshTracer {
                          std::vector<RayResult>& results) const override {
     MeshHits hits;
     for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (!is_whole(rays[i])) continue;
       RayResult& known = results[i];
       known.half_opacity_depth =
           find_mesh_half_opacity(mesh_, fields_.view(), transfer_.tables(),

@@ -27,7 +27,7 @@ class MeshMarch {
         walk_(*static_cast<const Tetrahedra*>(job.mesh)),
         blur_(convert<float>(rays.blur)),
         t_blur_(convert<float>(rays.t_blur)),
-        front_(rays.eye) {
+        front_(rays.from) {
     begin_paths(rays.meets & !rays.crowded);
   }
 
@@ -68,6 +68,7 @@ class MeshMarch {
   template <class Absorbs>
   M put_down(Rows& rows, int s, Absorbs&& absorbs) noexcept {
     const M found = find_span(rows, s * N, absorbs);
+    stop(t_ >= rays.until);
     const M ended = walking & (walk_.ahead() < I(0));
     if (any(ended)) end_paths(ended);
     return found;
@@ -86,47 +87,57 @@ class MeshMarch {
     auto&& span = values_.reach(face, place, tetrahedron_);
 
     // As span_between() and for_each_mesh_span() in traverse/mesh_spans.h.
-    T begin = t_;
+    T begin = t_, end = t;
     M overlaps(false);
-    F both = t_error_ + t_error, at_eye(0);
-    const M behind = on & (min(t_, t) < front_);
+    F both = t_error_ + t_error, at_cuts(0);
+    const M beyond = on & (t > rays.until);
+    if (any(beyond)) {
+      end = select(beyond, max(rays.until, t_), t);
+      values_.cut_behind(beyond & (t_ < t), span, (end - t_) / (t - t_));
+      both = select(beyond, both + both, both);
+      at_cuts = select(beyond, rounded(rays.until), F(0));
+    }
+    const M behind = on & (min(t_, end) < front_);
     if (any(behind)) {
       begin = max(t_, front_);
-      values_.cut(span, select((t_ < front_) & (front_ < t), (front_ - t_) / (t - t_), T(0)));
+      values_.cut(span, select((t_ < front_) & (front_ < end), (front_ - t_) / (end - t_), T(0)));
       const F most = front_error_ + t_error_ + t_error;
-      overlaps = behind & (front_ > rays.eye) & (convert<float>(front_ - min(t_, t)) > most);
+      overlaps = behind & (front_ > rays.from) & (convert<float>(front_ - min(t_, end)) > most);
       // What the data are where the span is cut moves with both faces, and no neighbour makes good
-      // for it: twice what they are charged where it is whole. Where rays begin is rounded to S.
+      // for it: twice what they are charged where it is whole. Where parts begin and end is rounded
+      // to S.
       both = select(behind, both + both, both);
-      at_eye =
-          select(behind & !(front_ > rays.eye),
-                 F(static_cast<float>(rounding_unit<S>)) * abs(convert<float>(rays.eye)), F(0));
+      at_cuts += select(behind & !(front_ > rays.from), rounded(rays.from), F(0));
     }
-    const M ahead = on & (begin < t);
+    const M ahead = on & (begin < end);
     const M vacuum = values_.vacuum(span);
     I note = select(overlaps, I(SpanNote::overlaps), I(0));
     const M found = (ahead & !vacuum & absorbs(span, rows, at, note)) | overlaps;
     if (any(found)) {
-      const T length = max(t - begin, T(0));
+      const T length = max(end - begin, T(0));
       values_.put_down(span, length, rows, at);
       convert<float>(length).store(rows.length + at);
       convert<float>(rays.end - begin).store(rows.left + at);
       const F at_ends = off_at_ends(t_error);
       const bool steps = values_.steps();
       (steps ? F(0) : both).store(rows.position_error + at);
-      ((steps ? both : at_ends) + at_eye).store(rows.end_error + at);
+      ((steps ? both : at_ends) + at_cuts).store(rows.end_error + at);
       note.store(rows.code + at);
     }
     if constexpr (Values::passes_over_light) {
       passed_ends += select(ahead & !(vacuum | found), off_at_ends(t_error), F(0));
     }
-    beside_vacuum += select(on & (vacuum | !ahead), t_error_ + t_error, F(0));
+    // What lies before the part, or behind it, is nothing to it.
+    const F off = t_error_ + t_error;
+    const M outside = (convert<float>(rays.from - max(t_, t)) > off) |
+                      (convert<float>(min(t_, t) - rays.until) > off);
+    beside_vacuum += select(on & (vacuum | !ahead) & !outside, off, F(0));
     // Past a hit that may not be the way's own: for a ray by itself to find out.
     const M past =
         on & (t - T(4) * (rays.t_blur + T(rays.t_rounding)) > next_t_) & (walk_.ahead() >= I(0));
     if (any(past)) give_up(past);
     const M forward = ahead | overlaps;
-    front_ = select(forward, max(t, begin), front_);
+    front_ = select(forward, max(end, begin), front_);
     front_error_ = select(forward, t_error, front_error_);
     t_ = select(on, t, t_);
     t_error_ = select(on, t_error, t_error_);
@@ -139,6 +150,11 @@ class MeshMarch {
   void see(I point, ProjectedPoint<T>& seen, T& carried) noexcept {
     rays.see(point, seen, carried);
     values_.see(point);
+  }
+
+  /// What rounding to S takes from a parameter.
+  static F rounded(const T& t) noexcept {
+    return F(static_cast<float>(rounding_unit<S>)) * abs(convert<float>(t));
   }
 
   /// How far off those ends of a span are that no neighbour makes good for.

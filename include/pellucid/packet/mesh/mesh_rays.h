@@ -36,7 +36,7 @@ class MeshRays {
       return D::load(of_lane);
     };
     using View = RayFrame<double>;
-    double eye_at[N], direction[3][N];
+    double eye_at[N], direction[3][N], from_at[N], until_at[N];
     const double extent = length(mesh_.upper - mesh_.lower);
     const double unit = power_of_two_below(1 / extent);
     for (int l = 0; l < N; ++l) {
@@ -45,7 +45,12 @@ class MeshRays {
           d{ray.direction[0], ray.direction[1], ray.direction[2]};
       view_of_[l] = make_ray_frame({o, d}, mesh_.center(), mesh_.coordinate_bound);
       eye_at[l] = -view_of_[l].t_origin;
-      eye_of_[l] = static_cast<S>(eye_at[l]);
+      // What is beyond the last number there is as good as infinite.
+      constexpr auto last = static_cast<double>(std::numeric_limits<S>::max());
+      from_at[l] = min(eye_at[l] + ray.begin, last);
+      until_at[l] = min(eye_at[l] + ray.end, last);
+      from_of_[l] = static_cast<S>(from_at[l]);
+      until_of_[l] = static_cast<S>(until_at[l]);
       view_of_[l].t_origin = 0;
       // Places across the ray in units of about the mesh's size: products of small ones must not
       // underflow in binary32.
@@ -68,6 +73,8 @@ class MeshRays {
     // A parameter is no farther from the middle than the diagonal.
     t_rounding = static_cast<S>(static_cast<double>(rounding_unit<S>) * extent);
     eye = convert<S>(D::load(eye_at));
+    from = convert<S>(D::load(from_at));
+    until = convert<S>(D::load(until_at));
     find_hits(M::from_bits(count == N ? (1u << N) - 1u : (1u << count) - 1u));
   }
 
@@ -76,7 +83,8 @@ class MeshRays {
   T t_blur;        ///< and along it, in world units
   S t_rounding;    ///< what rounding to S takes from a parameter at most
   T eye;           ///< the parameter of where the rays begin
-  T begin, end;    ///< where the rays may be in the mesh
+  T from, until;   ///< those between which their parts are
+  T begin, end;    ///< where the parts may be in the mesh
   M meets{false};  ///< whether they meet it
   M crowded{false};  ///< whether they are not for lanes, as with more hits than there is room for
 
@@ -191,8 +199,8 @@ class MeshRays {
         }
         hit[k] = moved;
       }
-      first[l] = max(hit[0].t, eye_of_[l]);
-      last[l] = hit[hits_[l] - 1].t;
+      first[l] = max(hit[0].t, from_of_[l]);
+      last[l] = min(hit[hits_[l] - 1].t, until_of_[l]);
     }
     begin = T::load(first);
     end = T::load(last);
@@ -228,7 +236,7 @@ class MeshRays {
   RayFrame<D> view_;
   Vec3<F> direction_;
   RayFrame<double> view_of_[N];
-  S eye_of_[N];
+  S from_of_[N], until_of_[N];
   int hits_[N], next_[N];
   Hit hit_[N][most_hits];
 };

@@ -92,6 +92,10 @@ class MeshVariable {
   static void cut(Span& span, const T& share) noexcept {
     span.front += share * (span.back - span.front);
   }
+  /// Ends the lanes' spans at so much of them.
+  static void cut_behind(M lanes, Span& span, const T& share) noexcept {
+    span.back = select(lanes, span.front + share * (span.back - span.front), span.back);
+  }
   static M vacuum(const Span& span) noexcept { return is_nan(span.front + span.back); }
   static void put_down(const Span& span, const T& length, Rows& rows, int at) noexcept {
     const F f = convert<float>(span.front), b = convert<float>(span.back);

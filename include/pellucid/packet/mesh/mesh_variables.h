@@ -90,6 +90,13 @@ class MeshVariables {
       span.front[c] += share * (span.back[c] - span.front[c]);
     }
   }
+  /// Ends the lanes' spans at so much of them.
+  static void cut_behind(M lanes, Span& span, const T& share) noexcept {
+    for (int c = 0; c < span.channels; ++c) {
+      const T cut = span.front[c] + share * (span.back[c] - span.front[c]);
+      span.back[c] = select(lanes, cut, span.back[c]);
+    }
+  }
   static M vacuum(const Span& span) noexcept {
     T sum = span.front[0] + span.back[0];
     for (int c = 1; c < span.channels; ++c) sum += span.front[c] + span.back[c];
