@@ -3,6 +3,7 @@
 // Packets of several layers against the general path, which is in double and one ray at a time.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -190,6 +191,60 @@ TEST(LayerPackets, AreWithinWhatTheySayOfTheGeneralPath) {
   EXPECT_LT(unknown, pixels / 20);
   // They are what is tested.
   EXPECT_GT(pieces, 4 * by_caller);
+}
+
+/// Two volumes of these numbers, in a world of this size: one of doubles, one of floats where these
+/// hold them, in light.
+Scene scene_of_size(double values, double world) {
+  const auto points = [&](Rgb<double> color) {
+    return scenes::transfer(
+        {{0.2 * values, 0, color}, {0.6 * values, 2 / world, {1, 1, 1}}, {values, 0, color}});
+  };
+  Volume::Description description = scenes::grid_description(
+      {7, 8, 6}, {-0.5 * world, -0.5 * world, -0.5 * world}, {world / 6, world / 7, world / 5});
+  const auto field = [&](int i, int j, int k) {
+    return values * (0.5 + 0.5 * std::sin(0.9 * i + 0.7 * j) * std::cos(0.8 * k));
+  };
+  Layer first{
+      VolumeContent{scenes::make_volume<double>(description, field), points({1, 0, 0}), nullptr}};
+  description.placement.origin.x += 0.2 * world;
+  Layer second{
+      VolumeContent{scenes::make_volume<float>(description, field), points({0, 0, 1}), nullptr}};
+  second.shading = Shading{0.3, 0.7, 0.2, 10, GradientKind::smooth, 0.02};
+  Scene scene;
+  scene.layers = {first, second};
+  scene.camera.position = {2 * world, 1.5 * world, 2 * world};
+  scene.camera.focal_point = {0, 0, 0};
+  scene.camera.vertical_angle = 30;
+  scene.size = {6, 6};
+  return scene;
+}
+
+TEST(LayerPackets, AreHonestBeyondWhatBinary32Holds) {
+  if (no_packets()) GTEST_SKIP() << "this machine has none of the instruction sets of packets";
+  double brightest = 0;
+  for (const double values : {1e-30, 1e-14, 1e-8, 1e8, 1e14, 1e30}) {
+    for (const double world : {1e-20, 1e-13, 1e-7, 1e7, 1e13, 1e20}) {
+      Scene scene = scene_of_size(values, world);
+      scene.integration.tolerance = 1e-6;
+      const Image truth = frame(scene, InstructionSet::scalar);
+      scene.integration.tolerance = 1e-3;
+      for (const InstructionSet set : packet_sets) {
+        if (!test::runs_here(set)) continue;
+        const Image image = frame(scene, set);
+        for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+          const double said =
+              static_cast<double>(image.error[i]) + static_cast<double>(truth.error[i]);
+          for (std::size_t c = 0; c < 4; ++c) {
+            ASSERT_NEAR(image.pixels[i][c], truth.pixels[i][c], said + 1e-7)
+                << name_of(set) << ", values of " << values << ", world of " << world;
+          }
+          brightest = std::max(brightest, double{image.pixels[i][3]});
+        }
+      }
+    }
+  }
+  EXPECT_GT(brightest, 0.3);
 }
 
 TEST(LayerPackets, DoNotDependOnThreads) {

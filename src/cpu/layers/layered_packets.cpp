@@ -30,6 +30,18 @@ bool is_one_table(const MultivariateTransfer<double>& function) {
   return function.gaussians.count == 0 && function.tables == 1 && function.channels == 1;
 }
 
+/// The largest magnitude of the values of a table's points.
+double largest_of(const PiecewiseLinear<double>& table) {
+  return std::max(std::fabs(table.value[0]), std::fabs(table.value[table.count - 1]));
+}
+
+/// Whether lanes are for a function: of one variable, with numbers whose squares binary32 has.
+bool suits_lanes(const MultivariateTransfer<double>& function) {
+  if (!is_one_table(function)) return false;
+  const double largest = largest_of(function.table[0].table);
+  return largest == 0 || is_moderate(largest);
+}
+
 /// Whether packets know the factor of a layer's extinction, if it has one.
 bool has_known_factor(const LayerLook& look) {
   if (look.extinction_factor() == nullptr) return true;
@@ -38,11 +50,6 @@ bool has_known_factor(const LayerLook& look) {
   return content != nullptr && factor && look.value_factor() == nullptr &&
          suits_single(*look.extinction_factor(), factor->largest_factor(),
                       steepest_gradient(look, *content->volume));
-}
-
-/// The largest magnitude of a layer's values that matters to its functions.
-double largest_of(const PiecewiseLinear<double>& table) {
-  return std::max(std::fabs(table.value[0]), std::fabs(table.value[table.count - 1]));
 }
 
 float largest_size(const CubicBernstein<double>& f) {
@@ -94,6 +101,7 @@ std::unique_ptr<const LayeredPackets> LayeredPackets::make(
   const Kernel kernel = find_kernel(layers[0].setup->setting().instruction_set);
   auto result =
       std::unique_ptr<LayeredPackets>(new LayeredPackets(layers, lights, wanted, depth, kernel));
+  if (!is_moderate(result->extent_) || wanted.largest_color > 1e12) return nullptr;
   const bool any = std::ranges::any_of(result->seen_, [](const Seen& one) { return one.in_lanes; });
   if (!any || result->marks_ > Row::most_marks) return nullptr;
   return result;
@@ -111,6 +119,7 @@ LayeredPackets::LayeredPackets(const std::vector<ClippedLayer>& layers,
   }
   PacketLight all;
   origin_ = place_lights(corners, lights, all);
+  extent_ = static_cast<double>(all.farthest);
   double largest_extinction = 0;
   for (const ClippedLayer& layer : layers) {
     add(layer, &all);
@@ -139,8 +148,9 @@ void LayeredPackets::add(const ClippedLayer& layer, const PacketLight* lights) {
   one.first_function = static_cast<int>(functions_.size());
   const LayerLook& look = one.source->look();
   if (look.has_surfaces()) marks_ += static_cast<int>(look.isosurfaces().size()) + 1;
-  one.in_lanes =
-      has_known_factor(look) && std::ranges::all_of(one.source->functions(), is_one_table);
+  one.in_lanes = has_known_factor(look) && one.source->most_extinction() <= 1e12 &&
+                 std::ranges::all_of(one.source->functions(),
+                                     [](const auto& function) { return suits_lanes(function); });
   const Reflection<double>* const r = look.reflection();
   if (r != nullptr) {
     // Where a light turns its edge to the direction half-way to a point light is no place that

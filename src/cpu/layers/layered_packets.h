@@ -65,6 +65,7 @@ class LayeredPackets {
   std::deque<Seen> seen_;
   std::deque<BinnedTransferStorage> functions_;
   Vec3<double> origin_;  ///< of places in the packets' world
+  double extent_ = 0;    ///< how far layers and lights are from it
   int marks_ = 0;
   PellucidLayeredJob job_{};  ///< what all rays have in common
   // As the job sees them.
