@@ -92,7 +92,8 @@ struct PellucidLayeredJob {
 
   // Where a row is not for packets, or no more of it: the caller integrates the share [from, 1] of
   // the row before `next`.
-  std::int32_t waits[PellucidLayerRow::most_lanes];  ///< out
+  std::int32_t waits[PellucidLayerRow::most_lanes];     ///< out
+  std::int32_t gives_up[PellucidLayerRow::most_lanes];  ///< in: such a ray is not followed further
   double from[PellucidLayerRow::most_lanes];
   double allowance_flat[PellucidLayerRow::most_lanes];
   double allowance_per_opacity[PellucidLayerRow::most_lanes];

@@ -252,14 +252,16 @@ class LayeredPackets::Packet {
       run(PellucidLayeredJob::go_on);
       goes_on = false;
       for (std::size_t l = 0; l < used_; ++l) {
+        job_.gives_up[l] = job_.waits[l] != 0 && !integrate(l) ? 1 : 0;
+        gave_up_[l] = gave_up_[l] || job_.gives_up[l] != 0;
         goes_on = goes_on || job_.done[l] == 0;
-        if (job_.waits[l] != 0) integrate(l);
       }
     }
     run(PellucidLayeredJob::finish);
     for (std::size_t l = 0; l < used_; ++l) {
       RayResult& to = results[number_[l]];
-      to = {};
+      to = left_to_general_path();
+      if (gave_up_[l] || !(results_[l].error <= tolerance_[l])) continue;
       read_result(results_[l], to);
       if (of_.marks_ > 0) {
         // Nobody knows on which side of a surface a place in binary32 is.
@@ -295,7 +297,8 @@ class LayeredPackets::Packet {
       job_.to_eye[1][l] = -static_cast<float>(ray_[from].direction.y);
       job_.to_eye[2][l] = -static_cast<float>(ray_[from].direction.z);
       job_.next[l] = job_.end[l] = job_.done[l] = job_.waits[l] = 0;
-      ended_[l] = false;
+      job_.gives_up[l] = 0;
+      ended_[l] = gave_up_[l] = false;
     }
     run(PellucidLayeredJob::begin);
   }
@@ -461,32 +464,50 @@ class LayeredPackets::Packet {
     return has_moderate_square(largest);
   }
 
-  /// Integrates what is left of a row that lanes are not for: the ray is followed anew there.
-  void integrate(std::size_t lane) {
+  /// Calls visit(part) for what layers there are on a part of a lane's ray, which is followed anew.
+  /// What has no length has rows of its own.
+  template <class Visit>
+  void follow_again(std::size_t lane, Interval<double> range, const Visit& visit) {
+    if (again_.start({ray_[lane], range}).empty()) return;
+    for (MergedPart part; again_.next(part);) {
+      const bool is_seen = part.kind == MergedPart::Kind::medium || part.left_out > 0;
+      if (is_seen && part.range.begin < part.range.end) visit(part);
+    }
+  }
+
+  /// Integrates what is left of a row that lanes are not for. Returns false if the ray has spent so
+  /// much that it had better be followed by itself.
+  bool integrate(std::size_t lane) {
     const MergedPart& row = row_[slot(lane, job_.next[lane] - 1)];
-    const double length = row.range.end - row.range.begin;
-    const Interval<double> range{row.range.begin + job_.from[lane] * length, row.range.end};
+    const double whole = row.range.end - row.range.begin;
+    const Interval<double> range{row.range.begin + job_.from[lane] * whole, row.range.end};
+    const double length = range.end - range.begin;
     double most = 0;
-    for (const Seen& one : of_.seen_) most += one.source->most_extinction();
-    const double opacity = std::min(most * (range.end - range.begin), 1.0);
+    follow_again(lane, range, [&](const MergedPart& part) {
+      double sum = part.left_out;
+      for (std::size_t k = 0; k < layers_; ++k) {
+        if (part.kind == MergedPart::Kind::medium && again_.key()[k] >= 0) {
+          sum += most_extinction(*of_.seen_[k].source, again_.key()[k], *again_.stretches()[k]);
+        }
+      }
+      most = std::max(most, sum);
+    });
+    const double opacity = std::min(most * length, 1.0);
+    const double allowed = job_.allowance_per_opacity[lane] * opacity + job_.allowance_flat[lane];
+    const double share = length / (inside_[lane].end - inside_[lane].begin);
+    if (!(allowed >= RayBudget<double>::minimum_allowance(tolerance_[lane], share))) return false;
     RayTolerance wanted = of_.wanted_;
-    wanted.tolerance =
-        std::max(job_.allowance_per_opacity[lane] * opacity + job_.allowance_flat[lane], 1e-12);
+    wanted.tolerance = std::min(allowed, largest_tolerance);
     const MultivariateTransfer<double> nothing{};
-    MultivariateRayIntegrator integrator(nothing, most, wanted, range.end - range.begin);
-    const auto inside = again_.start({ray_[lane], range});
-    double position_error = 0;
-    for (MergedPart part; !inside.empty() && again_.next(part);) {
-      // What has no length has rows of its own.
-      if (part.kind == MergedPart::Kind::absent) {
+    MultivariateRayIntegrator integrator(nothing, most, wanted, length);
+    follow_again(lane, range, [&](const MergedPart& part) {
+      if (integrator.done()) return;
+      if (part.kind == MergedPart::Kind::medium) {
+        media_.add(part, again_.key(), again_.stretches(), ray_[lane], integrator);
+      } else {
         integrator.skip(part.range.end - part.range.begin, part.left_out);
       }
-      if (part.kind != MergedPart::Kind::medium) continue;
-      position_error = std::max(position_error, part.position_error);
-      if (!media_.add(part, again_.key(), again_.stretches(), ray_[lane], integrator)) break;
-    }
-    // A layer that ends within what positions are off by may be missing.
-    const double between = 2 * most * std::max(position_error, row.position_error);
+    });
     // Nothing is left, unless that was charged.
     if (!integrator.done()) integrator.set_remaining_length(0);
     const RayResult found = integrator.result();
@@ -494,10 +515,27 @@ class LayeredPackets::Packet {
                          found.opacity,
                          std::exp(-found.optical_depth),
                          {found.radiance.r, found.radiance.g, found.radiance.b},
-                         found.error + job_.largest_color * std::min(between, 1.0),
+                         found.error,
                          opacity,
                          static_cast<std::uint8_t>(found.proved),
                          1};
+    return true;
+  }
+
+  /// A bound on the extinction of a layer on a stretch.
+  static double most_extinction(const LayerSource& source, int number,
+                                const LayerStretch& stretch) {
+    const MultivariateTransfer<double>& function =
+        source.functions()[static_cast<std::size_t>(number)];
+    if (!is_one_table(function) || source.look().extinction_factor() != nullptr) {
+      return source.most_extinction();
+    }
+    const PiecewiseLinear<double>& table = function.table[0].table;
+    const CubicBernstein<double>& data = stretch.data[0];
+    const double off = data_rounding(data) + stretch.value_error[0];
+    return sensitivity(table, table.interval(data.hull_min() - off),
+                       table.interval(data.hull_max() + off), off)
+        .largest_extinction;
   }
 
   const LayeredPackets& of_;
@@ -517,7 +555,7 @@ class LayeredPackets::Packet {
   std::array<Ray<double>, Row::most_lanes> ray_{};
   std::array<std::size_t, Row::most_lanes> number_{};
   std::array<double, Row::most_lanes> tolerance_{};
-  std::array<bool, Row::most_lanes> ended_{};
+  std::array<bool, Row::most_lanes> ended_{}, gave_up_{};
 };
 
 std::vector<RayResult> LayeredPackets::integrate(const std::vector<RayPart>& parts,

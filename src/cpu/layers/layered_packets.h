@@ -33,7 +33,8 @@ class LayeredPackets {
   static bool suit(const LayerSetting& setting);
 
   /// Returns what the parts gather, each off by at most the tolerance beside it; what clips'
-  /// positions are off by is not counted. Once `stop` is requested, results do not matter.
+  /// positions are off by is not counted. An infinite error leaves a part to the general path. Once
+  /// `stop` is requested, results do not matter.
   std::vector<RayResult> integrate(const std::vector<RayPart>& parts,
                                    const std::vector<double>& tolerances,
                                    const std::stop_token& stop) const;

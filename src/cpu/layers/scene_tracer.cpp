@@ -339,15 +339,15 @@ class SceneTracer : public RayTracer {
       tolerances.push_back((1 - ray_left_out_share) * std::min(own, largest_tolerance));
       of.push_back(i);
     }
+    std::vector<RayResult> found;
     if (packets_) {
-      const std::vector<RayResult> found = packets_->integrate(ahead, tolerances, options.stop);
-      for (std::size_t k = 0; k < found.size(); ++k) {
-        journeys[of[k]].add_behind(found[k], ahead[k].range);
-      }
-      return;
+      found = packets_->integrate(ahead, tolerances, options.stop);
+    } else {
+      found.assign(ahead.size(), left_to_general_path());
     }
     for (std::size_t k = 0; k < ahead.size() && !options.stop.stop_requested(); ++k) {
-      journeys[of[k]].add_behind(made(general).integrate(ahead[k], tolerances[k]), ahead[k].range);
+      if (std::isinf(found[k].error)) found[k] = made(general).integrate(ahead[k], tolerances[k]);
+      journeys[of[k]].add_behind(found[k], ahead[k].range);
     }
   }
 

@@ -49,6 +49,10 @@ class LayeredPacket {
     job_ = &job;
     next_ = loaded(job.next);
     end_ = loaded(job.end);
+    const M given_up = loaded(job.gives_up) > I(0);
+    alive_ = alive_ & !given_up;
+    pending_ = pending_ & !given_up;
+    waits_ = waits_ & !given_up;
     take_handed();
     for (;;) {
       take_rows();
