@@ -292,6 +292,43 @@ TEST(LayerPackets, LeaveRaysThatSpendTooMuchToTheGeneralPath) {
   EXPECT_GT(good, 100U * static_cast<unsigned>(set_count()));
 }
 
+/// Slices in the faces of a volume, where rays enter it and where they leave the last layer.
+TEST(LayerPackets, MeetSurfacesAtTheEndsOfRays) {
+  if (no_packets()) GTEST_SKIP() << "this machine has none of the instruction sets of packets";
+  int seen = 0;
+  for (const double z : {-1.0, 1.0, 0.25}) {
+    const auto layer = [](double move) {
+      const auto volume = scenes::make_volume<float>(
+          scenes::grid_description({5, 6, 4}, {-1, -1, -1}, {0.5, 0.4, 2.0 / 3}),
+          [](int i, int j, int k) { return 100 + 60 * std::sin(i + j - k); });
+      Layer result{VolumeContent{
+          volume, scenes::transfer({{0, 0, {1, 0, 0}}, {150, 0.1, {0, 1, 0}}}), nullptr}};
+      result.transform.translation = {move, 0, 0};
+      return result;
+    };
+    Scene scene;
+    scene.layers = {layer(0), layer(0.3)};
+    scene.layers[0].slices = {{{0, 0, z}, {0, 0, 1}, 0.5}};
+    scene.camera.position = {0.3, 0.2, 5};
+    scene.camera.focal_point = {0, 0, 0};
+    scene.camera.vertical_angle = 20;
+    scene.size = {9, 9};
+    scene.integration.tolerance = 1e-6;
+    const Image truth = frame(scene, InstructionSet::scalar);
+    scene.integration.tolerance = 1e-2;
+    for (const InstructionSet set : packet_sets) {
+      if (!test::runs_here(set)) continue;
+      const Image image = frame(scene, set);
+      for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        ASSERT_NEAR(image.pixels[i][3], truth.pixels[i][3], image.error[i] + truth.error[i] + 1e-7f)
+            << name_of(set) << ", slice at " << z << ", pixel " << i;
+        if (truth.pixels[i][3] > 0.5f) ++seen;
+      }
+    }
+  }
+  EXPECT_GT(seen, 100 * set_count());
+}
+
 TEST(LayerPackets, DoNotDependOnThreads) {
   for (unsigned n = 100; n < 108; ++n) {
     Scene scene = RandomLayers(n).scene();

@@ -291,8 +291,7 @@ class LayeredPackets::Packet {
     for (std::size_t l = 0; l < std::size_t{Row::most_lanes}; ++l) {
       const std::size_t from = l < used_ ? l : 0;
       job_.tolerance[l] = static_cast<float>(tolerance_[from]);
-      // A little longer where there are surfaces: one may be at the very end.
-      job_.length[l] = above((inside_[from].end - inside_[from].begin) * (1 + 1e-6));
+      job_.length[l] = above(inside_[from].end - inside_[from].begin + beyond(from));
       job_.to_eye[0][l] = -static_cast<float>(ray_[from].direction.x);
       job_.to_eye[1][l] = -static_cast<float>(ray_[from].direction.y);
       job_.to_eye[2][l] = -static_cast<float>(ray_[from].direction.z);
@@ -301,6 +300,11 @@ class LayeredPackets::Packet {
       ended_[l] = gave_up_[l] = false;
     }
     run(PellucidLayeredJob::begin);
+  }
+
+  /// How much longer rays are taken for where there are surfaces: one may be at the very end.
+  double beyond(std::size_t lane) const {
+    return of_.marks_ > 0 ? 1e-6 * (inside_[lane].end - inside_[lane].begin) : 0;
   }
 
   std::size_t slot(std::size_t lane, std::int32_t row) const {
@@ -327,7 +331,7 @@ class LayeredPackets::Packet {
   /// Writes a row. Returns false if there is nothing to be told.
   bool write(std::size_t lane, std::size_t at, const MergedPart& part, float* head) {
     head[Row::length] = static_cast<float>(part.range.end - part.range.begin);
-    head[Row::left] = static_cast<float>(inside_[lane].end - part.range.begin);
+    head[Row::left] = static_cast<float>(inside_[lane].end - part.range.begin + beyond(lane));
     head[Row::position_error] = above(part.position_error);
     head[Row::left_out] = above(part.left_out);
     head[Row::present] = 0;
