@@ -329,6 +329,42 @@ TEST(LayerPackets, MeetSurfacesAtTheEndsOfRays) {
   EXPECT_GT(seen, 100 * set_count());
 }
 
+/// A layer alone in front of another, with an isosurface or with a medium: rays that several ways
+/// follow, one after the other.
+TEST(LayerPackets, KnowWhereHalfOfTheOpacityIs) {
+  int seen = 0;
+  for (const double opacity : {0.0, 0.3, 0.45, 1.0}) {
+    const double extinction = opacity > 0 ? 0 : 0.6;
+    Layer front{VolumeContent{scenes::builtin("sphere", 16),
+                              scenes::transfer({{0, 0, {1, 0, 0}}, {1, extinction, {0, 1, 0}}}),
+                              nullptr}};
+    if (opacity > 0) front.isosurfaces = {{0.5, opacity, {0, 0, 1}}};
+    Layer behind{VolumeContent{scenes::builtin("shells", 16),
+                               scenes::transfer({{0, 0.5, {0, 1, 0}}, {1, 2, {0, 1, 1}}}),
+                               nullptr}};
+    behind.transform.translation = {0, 0, -2.5};
+    Scene scene;
+    scene.layers = {front, behind};
+    scene.camera.position = {0.4, 0.3, 6};
+    scene.camera.focal_point = {0, 0, -1};
+    scene.camera.vertical_angle = 25;
+    scene.size = {32, 32};
+    scene.integration.tolerance = 1e-4;
+    RenderOptions options;
+    options.threads = 1;
+    options.depth = true;
+    const Image packets = render(scene, options);
+    options.instruction_set = InstructionSet::scalar;
+    const Image truth = render(scene, options);
+    for (std::size_t i = 0; i < packets.depth.size(); ++i) {
+      if (!std::isfinite(truth.depth[i])) continue;
+      ++seen;
+      EXPECT_NEAR(packets.depth[i], truth.depth[i], 1e-3f) << opacity << ' ' << i;
+    }
+  }
+  EXPECT_GT(seen, 1000);
+}
+
 TEST(LayerPackets, DoNotDependOnThreads) {
   for (unsigned n = 100; n < 108; ++n) {
     Scene scene = RandomLayers(n).scene();

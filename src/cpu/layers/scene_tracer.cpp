@@ -37,6 +37,7 @@ struct Journey {
     double opacity_before;  ///< of the ray
     double opacity;         ///< of the piece
     HalfOpacity half;       ///< of that
+    bool has_surfaces;      ///< whether a medium is not all of it
   };
   std::vector<Piece> pieces;
   RayResult found = missed_ray_result();
@@ -46,10 +47,10 @@ struct Journey {
   double transparency() const { return 1 - found.opacity; }
   /// The error of a part bounds what it does to everything behind it (RayResult::error), so that
   /// errors add up behind transparencies.
-  void add_behind(const RayResult& part, Interval<double> range) {
+  void add_behind(const RayResult& part, Interval<double> range, bool has_surfaces) {
     const double before = transparency();
     if (part.opacity > 0) {
-      of_pieces.push_back({range, found.opacity, part.opacity, part.half});
+      of_pieces.push_back({range, found.opacity, part.opacity, part.half, has_surfaces});
     }
     found.radiance += before * part.radiance;
     found.error += before * part.error;
@@ -64,17 +65,22 @@ struct Journey {
   void bracket_half() {
     if (found.half_opacity_depth < infinity) return;
     for (const Found& piece : of_pieces) {
-      const double left = 1 - piece.opacity_before;
-      const double wanted = 0.5 * found.opacity;
+      const double left = 1 - piece.opacity_before, wanted = 0.5 * found.opacity;
       if (piece.opacity_before + left * piece.opacity < wanted) continue;
-      // Half of the piece's own opacity is between these.
-      const Interval<double> own{std::max(piece.range.begin, piece.half.range.begin),
-                                 std::min(piece.range.end, piece.half.range.end)};
+      found.half = {piece.range, piece.opacity_before};
+      if (piece.has_surfaces) return;
+      // Half of the piece's own opacity is between these, as far as binary32 knows such places: no
+      // medium must be missed.
+      const double rounding =
+          2 * static_cast<double>(rounding_unit<float>) * (piece.range.end - piece.range.begin);
+      const Interval<double> own{std::max(piece.range.begin, piece.half.range.begin - rounding),
+                                 std::min(piece.range.end, piece.half.range.end + rounding)};
       const double at_begin = piece.opacity_before + left * piece.half.opacity_before;
-      const double at_half = piece.opacity_before + left * 0.5 * piece.opacity;
+      if (!(own.begin < own.end)) return;
       if (wanted < at_begin) {
-        found.half = {{piece.range.begin, own.begin}, piece.opacity_before};
+        found.half.range.end = std::min(own.begin + 2 * rounding, piece.range.end);
       } else {
+        const double at_half = piece.opacity_before + left * 0.5 * piece.opacity;
         found.half = {{own.begin, wanted < at_half ? own.end : piece.range.end}, at_begin};
       }
       return;
@@ -92,6 +98,9 @@ class SceneTracer : public RayTracer {
         depth_(depth),
         only_(layers_.size() == 1 && layers_[0].clips.empty() ? layers_[0].setup->fast()
                                                               : nullptr) {
+    for (const ClippedLayer& layer : layers_) {
+      surfaces_ = surfaces_ || has_surfaces(layer.setup->layer());
+    }
     if (only_ == nullptr && !is_sampled()) {
       packets_ = LayeredPackets::make(layers_, lights_, wanted_, depth_);
     }
@@ -304,9 +313,9 @@ class SceneTracer : public RayTracer {
         Journey& journey = journeys[group.of[k]];
         if (std::isinf(found[k].error)) {
           journey.add_behind(integrate(general, group.parts[k], wanted_.tolerance * own.share),
-                             group.parts[k].range);
+                             group.parts[k].range, has_surfaces(setup.layer()));
         } else {
-          journey.add_behind(found[k], group.parts[k].range);
+          journey.add_behind(found[k], group.parts[k].range, has_surfaces(setup.layer()));
           if (journey.pieces.size() == 1) {
             journey.found.half_opacity_depth = found[k].half_opacity_depth;
           }
@@ -347,7 +356,7 @@ class SceneTracer : public RayTracer {
     }
     for (std::size_t k = 0; k < ahead.size() && !options.stop.stop_requested(); ++k) {
       if (std::isinf(found[k].error)) found[k] = made(general).integrate(ahead[k], tolerances[k]);
-      journeys[of[k]].add_behind(found[k], ahead[k].range);
+      journeys[of[k]].add_behind(found[k], ahead[k].range, surfaces_);
     }
   }
 
@@ -375,6 +384,7 @@ class SceneTracer : public RayTracer {
   const RayTolerance wanted_;
   const bool depth_;
   const RayTracer* const only_;  ///< of the only layer, which has no clips; null otherwise
+  bool surfaces_ = false;        ///< whether any layer has some
   std::unique_ptr<const LayeredPackets> packets_;  ///< for the general path's parts; may be null
 };
 
