@@ -101,7 +101,7 @@ class SceneTracer : public RayTracer {
     for (const ClippedLayer& layer : layers_) {
       surfaces_ = surfaces_ || has_surfaces(layer.setup->layer());
     }
-    if (only_ == nullptr && !is_sampled()) {
+    if (only_ == nullptr && !layers_.empty() && !is_sampled()) {
       packets_ = LayeredPackets::make(layers_, lights_, wanted_, depth_);
     }
   }
