@@ -15,6 +15,7 @@
 
 #include "tests/packet/instruction_sets.h"
 #include "tests/packet/lit_scenes.h"
+#include "tests/scenes/gallery.h"
 #include "tests/scenes/layer_makers.h"
 #include "tests/scenes/meshes.h"
 #include "tests/support/instruction_sets.h"
@@ -363,6 +364,29 @@ TEST(LayerPackets, KnowWhereHalfOfTheOpacityIs) {
     }
   }
   EXPECT_GT(seen, 1000);
+}
+
+/// The scenes of the tolerance matrix, each from one camera.
+TEST(LayerPackets, AgreeWithTheGeneralPathOnTheGallery) {
+  if (no_packets()) GTEST_SKIP() << "this machine has none of the instruction sets of packets";
+  std::size_t camera = 0;
+  for (const auto& gallery : {scenes::layer_gallery(), scenes::light_gallery()}) {
+    for (const scenes::GalleryEntry& entry : gallery) {
+      SCOPED_TRACE(entry.name);
+      Scene scene = scenes::scene_of(entry.make(17), camera++ % 3, 17);
+      scene.integration.tolerance = 1e-5;
+      const Image truth = frame(scene, InstructionSet::scalar);
+      scene.integration.tolerance = 1.0 / 512;
+      const Image image = frame(scene, std::nullopt);
+      for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        for (std::size_t c = 0; c < 4; ++c) {
+          ASSERT_NEAR(image.pixels[i][c], truth.pixels[i][c],
+                      image.error[i] + truth.error[i] + 1e-7f)
+              << "pixel " << i;
+        }
+      }
+    }
+  }
 }
 
 TEST(LayerPackets, DoNotDependOnThreads) {

@@ -185,7 +185,9 @@ bool LayerMerge::next(MergedPart& part) {
         }
         state_ = State::surfaces_here;
         if (unknown > 0) {
+          part = {};
           part.kind = MergedPart::Kind::unknown;
+          part.range = {at_, at_};
           part.opacity = unknown;
           return true;
         }
