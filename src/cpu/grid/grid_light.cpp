@@ -55,12 +55,8 @@ Reflection<float> in_single(const Reflection<double>& r) {
 std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<double>* r,
                                         const Volume& volume,
                                         const std::vector<LightSource<double>>& lights) {
-  PacketLight result;
-  if (r == nullptr) {
-    // All colors as they are, and no normal that turns.
-    result.reflection.ambient = 1;
-    result.reflection.flat_square = 1e30f;
-  } else {
+  PacketLight result = no_light();
+  if (r != nullptr) {
     const double steepest = steepest_gradient(look, volume);
     if (!has_moderate_square(steepest) || !has_moderate_square(std::sqrt(r->flat_square)) ||
         lights.size() > std::size_t{PacketLight::most_lights}) {
@@ -73,14 +69,29 @@ std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<
     if (!has_moderate_square(static_cast<double>(result.farthest))) return std::nullopt;
     result.of_field = look.layer().shading->gradient == GradientKind::field ? 1 : 0;
   }
+  set_world_gradient(volume, result);
   for (int c = 0; c < 3; ++c) {
     for (int a = 0; a < 3; ++a) {
-      result.world_gradient[c][a] =
-          static_cast<float>(volume.grid_from_world().matrix.column[c][a]);
       result.world_direction[c][a] = volume.world_from_grid().matrix.column[a][c];
     }
   }
   return result;
+}
+
+PacketLight no_light() {
+  PacketLight result;
+  result.reflection.ambient = 1;
+  result.reflection.flat_square = 1e30f;
+  return result;
+}
+
+void set_world_gradient(const Volume& volume, PacketLight& result) {
+  for (int c = 0; c < 3; ++c) {
+    for (int a = 0; a < 3; ++a) {
+      result.world_gradient[c][a] =
+          static_cast<float>(volume.grid_from_world().matrix.column[c][a]);
+    }
+  }
 }
 
 double steepest_gradient(const LayerLook& look, const Volume& volume) {
@@ -110,7 +121,14 @@ std::unique_ptr<const GridLight> GridLight::make(const Layer& layer,
   // Where it turns its edge to the direction half-way to a point light is no place packets know.
   if (!light || (light->points > 0 && has_kink_in_highlight(light->reflection))) return nullptr;
   result->light_ = *light;
-  if (layer.gradient_opacity && !result->add_factor(*layer.gradient_opacity)) return nullptr;
+  if (layer.gradient_opacity) {
+    const LayerLook& look = result->look_;
+    if (!suits_single(*look.extinction_factor(), layer.gradient_opacity->largest_factor(),
+                      steepest_gradient(look, result->volume_))) {
+      return nullptr;
+    }
+    set_factor(look, result->volume_, result->factor_, result->light_);
+  }
   if (has_surfaces(layer)) {
     result->surfaces_ =
         packet_surfaces(result->look_, result->lights_, std::max(wanted.largest_color, 1.0));
@@ -128,14 +146,31 @@ GridLight::GridLight(const Layer& layer, const std::vector<Light>& lights,
   if (layer.gradient_opacity) magnitude_.emplace(volume_, GradientKind::smooth);
 }
 
-bool GridLight::add_factor(const GradientOpacity& factor) {
-  const double steepest = steepest_gradient(look_, volume_);
-  const PiecewiseLinear<double>& table = *look_.extinction_factor();
-  if (!suits_single(table, factor.largest_factor(), steepest)) return false;
-  factor_.emplace(table, steepest);
-  light_.factor = &factor_->view();
-  light_.largest_factor = std::max(static_cast<float>(factor.largest_factor()) * 1.0001f, 1.0f);
-  return true;
+void set_factor(const LayerLook& look, const Volume& volume,
+                std::optional<BinnedTransferStorage>& storage, PacketLight& result) {
+  storage.emplace(*look.extinction_factor(), steepest_gradient(look, volume));
+  result.factor = &storage->view();
+  const double largest = look.layer().gradient_opacity->largest_factor();
+  result.largest_factor = std::max(static_cast<float>(largest) * 1.0001f, 1.0f);
+}
+
+double most_extinction_on(const PiecewiseLinear<double>& function,
+                          const CubicBernstein<double>& data, double off) {
+  off += data_rounding(data);
+  return sensitivity(function, function.interval(data.hull_min() - off),
+                     function.interval(data.hull_max() + off), off)
+      .largest_extinction;
+}
+
+PellucidCellResult handed_back(const RayResult& found, double opacity) {
+  return {found.optical_depth,
+          found.opacity,
+          std::exp(-found.optical_depth),
+          {found.radiance.r, found.radiance.g, found.radiance.b},
+          found.error,
+          opacity,
+          static_cast<std::uint8_t>(found.proved),
+          1};
 }
 
 void GridLight::integrate(const StructuredWalk<double>::Step& step, const Ray<double>& world,
@@ -161,26 +196,14 @@ void GridLight::integrate(const StructuredWalk<double>::Step& step, const Ray<do
   parts.add(stretch, function, look_);
   parts.finish();
   // A bound on the opacity, for which there is an allowance.
-  const CubicBernstein<double>& data = stretch.data[0];
-  const double off = data_rounding(data);
-  const int first = transfer.wide.interval(data.hull_min() - off);
-  const int last = transfer.wide.interval(data.hull_max() + off);
   const double most = static_cast<double>(light_.largest_factor) *
-                      sensitivity(transfer.wide, first, last, off).largest_extinction;
+                      most_extinction_on(transfer.wide, stretch.data[0], 0);
   const double opacity = std::min(most * (range.end - range.begin), 1.0);
   RayTolerance wanted = wanted_;
   wanted.tolerance = std::max(cell.allowance_per_opacity * opacity + cell.allowance_flat, 1e-12);
   MultivariateRayIntegrator integrator(function, most, wanted, range.end - range.begin);
   parts.integrate(0, cell.position_error, integrator);
-  const RayResult found = integrator.result();
-  result = {found.optical_depth,
-            found.opacity,
-            std::exp(-found.optical_depth),
-            {found.radiance.r, found.radiance.g, found.radiance.b},
-            found.error,
-            opacity,
-            static_cast<std::uint8_t>(found.proved),
-            1};
+  result = handed_back(integrator.result(), opacity);
 }
 
 }  // namespace pellucid

@@ -30,6 +30,10 @@ LightSource<float> in_single(const LightSource<double>& light, const Vec3<double
 /// which is returned, and how far a corner or a light is from there.
 Vec3<double> place_lights(std::span<const Vec3<double>> corners,
                           const std::vector<LightSource<double>>& lights, PacketLight& result);
+/// Returns light that leaves all colors as they are, with no normal that turns.
+PacketLight no_light();
+/// Puts down how gradients of a grid are turned into the world.
+void set_world_gradient(const Volume& volume, PacketLight& result);
 /// Returns whether binary32 holds the square of x well.
 bool has_moderate_square(double x);
 /// Returns the largest gradient that data of this range may have between two values.
@@ -37,6 +41,18 @@ double steepest_gradient(const LayerLook& look, const Volume& volume);
 /// Returns whether binary32 tells magnitudes of gradients up to `steepest` apart at the control
 /// points of a factor of at most `largest`.
 bool suits_single(const PiecewiseLinear<double>& factor, double largest, double steepest);
+/// Makes the factor of a layer's extinction, for which suits_single(); `storage` must outlive the
+/// light.
+void set_factor(const LayerLook& look, const Volume& volume,
+                std::optional<BinnedTransferStorage>& storage, PacketLight& result);
+
+/// Returns the largest extinction of a function along data that are off by this, beside their
+/// rounding.
+double most_extinction_on(const PiecewiseLinear<double>& function,
+                          const CubicBernstein<double>& data, double off);
+/// Returns what was integrated of what packets hand back. `opacity`: the bound on it for which
+/// there was an allowance.
+PellucidCellResult handed_back(const RayResult& found, double opacity);
 
 /// The light of a volume and its gradient opacity as packets see them, and cells that packets hand
 /// back.
@@ -58,7 +74,6 @@ class GridLight {
 
  private:
   GridLight(const Layer& layer, const std::vector<Light>& lights, const RayTolerance& wanted);
-  bool add_factor(const GradientOpacity& factor);
 
   const Volume& volume_;
   RayTolerance wanted_;

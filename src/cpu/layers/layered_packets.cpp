@@ -20,11 +20,6 @@ namespace pellucid {
 namespace {
 
 using Row = PellucidLayerRow;
-constexpr float unit = rounding_unit<float>;
-
-float above(double x) {
-  return static_cast<float>(x) * (1 + 2 * unit);
-}
 
 bool is_one_table(const MultivariateTransfer<double>& function) {
   return function.gaussians.count == 0 && function.tables == 1 && function.channels == 1;
@@ -50,10 +45,6 @@ bool has_known_factor(const LayerLook& look) {
   return content != nullptr && factor && look.value_factor() == nullptr &&
          suits_single(*look.extinction_factor(), factor->largest_factor(),
                       steepest_gradient(look, *content->volume));
-}
-
-float largest_size(const CubicBernstein<double>& f) {
-  return static_cast<float>(std::max(std::fabs(f.hull_min()), std::fabs(f.hull_max())));
 }
 
 using Kernel = void (*)(PellucidLayeredJob*);
@@ -102,7 +93,8 @@ std::unique_ptr<const LayeredPackets> LayeredPackets::make(
   auto result =
       std::unique_ptr<LayeredPackets>(new LayeredPackets(layers, lights, wanted, depth, kernel));
   if (!is_moderate(result->extent_) || wanted.largest_color > 1e12) return nullptr;
-  const bool any = std::ranges::any_of(result->seen_, [](const Seen& one) { return one.in_lanes; });
+  const bool any =
+      std::ranges::any_of(result->seen_, [](const SeenLayer& one) { return one.in_lanes; });
   if (!any || result->marks_ > Row::most_marks) return nullptr;
   return result;
 }
@@ -126,7 +118,7 @@ LayeredPackets::LayeredPackets(const std::vector<ClippedLayer>& layers,
     largest_extinction += layer.setup->largest_extinction();
   }
   for (const BinnedTransferStorage& function : functions_) function_.push_back(&function.view());
-  for (const Seen& one : seen_) {
+  for (const SeenLayer& one : seen_) {
     light_.push_back(one.light ? &*one.light : nullptr);
     grid_.push_back(one.in_lanes && one.source->cells() != nullptr ? &one.grid : nullptr);
   }
@@ -143,10 +135,11 @@ LayeredPackets::LayeredPackets(const std::vector<ClippedLayer>& layers,
 }
 
 void LayeredPackets::add(const ClippedLayer& layer, const PacketLight* lights) {
-  Seen& one = seen_.emplace_back();
+  SeenLayer& one = seen_.emplace_back();
   one.source = &layer.setup->source();
   one.first_function = static_cast<int>(functions_.size());
   const LayerLook& look = one.source->look();
+  one.first_mark = marks_;
   if (look.has_surfaces()) marks_ += static_cast<int>(look.isosurfaces().size()) + 1;
   one.in_lanes = has_known_factor(look) && one.source->most_extinction() <= 1e12 &&
                  std::ranges::all_of(one.source->functions(),
@@ -169,30 +162,15 @@ void LayeredPackets::add(const ClippedLayer& layer, const PacketLight* lights) {
   }
   if (one.source->cells() != nullptr) set_grid(*one.source->cells(), one.grid);
   if (!look.is_lit()) return;
-  PacketLight& light = one.light.emplace();
-  if (r != nullptr) {
-    light = *lights;
-    light.reflection = in_single(*r);
-  } else {
-    // All colors as they are, and no normal that turns.
-    light.reflection.ambient = 1;
-    light.reflection.flat_square = 1e30f;
-  }
+  PacketLight& light = one.light.emplace(r != nullptr ? *lights : no_light());
+  if (r != nullptr) light.reflection = in_single(*r);
   if (const Volume* const cells = one.source->cells()) {
     light.of_field = r != nullptr && look.layer().shading->gradient == GradientKind::field ? 1 : 0;
-    for (int c = 0; c < 3; ++c) {
-      for (int a = 0; a < 3; ++a) {
-        light.world_gradient[c][a] =
-            static_cast<float>(cells->grid_from_world().matrix.column[c][a]);
-      }
-    }
+    set_world_gradient(*cells, light);
   }
-  if (const auto* const factor = look.extinction_factor()) {
-    const double largest = look.layer().gradient_opacity->largest_factor();
-    one.factor.emplace(
-        *factor, steepest_gradient(look, *std::get<VolumeContent>(look.layer().content).volume));
-    light.factor = &one.factor->view();
-    light.largest_factor = std::max(static_cast<float>(largest) * 1.0001f, 1.0f);
+  if (look.extinction_factor() != nullptr) {
+    const Volume& volume = *std::get<VolumeContent>(look.layer().content).volume;
+    set_factor(look, volume, one.factor, light);
   }
 }
 
@@ -209,17 +187,9 @@ class LayeredPackets::Packet {
         part_(layers_ * Row::most_lanes * Row::of_a_ray * Row::part_fields),
         row_(lanes_ * Row::of_a_ray),
         again_(of.layers_, of.lights_, job_.largest_color, false),
-        sources_(sources_of(of)),
-        media_(sources_, of.lights_) {
+        media_(again_.sources(), of.lights_) {
     for (std::size_t l = 0; l < lanes_; ++l) {
       merge_.emplace_back(of.layers_, of.lights_, job_.largest_color, true);
-    }
-    mark_of_.resize(layers_);
-    int mark = 0;
-    for (std::size_t k = 0; k < layers_; ++k) {
-      mark_of_[k] = mark;
-      const LayerLook& look = of.seen_[k].source->look();
-      if (look.has_surfaces()) mark += static_cast<int>(look.isosurfaces().size()) + 1;
     }
     job_.state = state_.get();
     job_.head = head_.data();
@@ -275,12 +245,6 @@ class LayeredPackets::Packet {
   }
 
  private:
-  static std::vector<const LayerSource*> sources_of(const LayeredPackets& of) {
-    std::vector<const LayerSource*> sources;
-    for (const Seen& one : of.seen_) sources.push_back(one.source);
-    return sources;
-  }
-
   void run(PellucidLayeredJob::Step step) {
     job_.step = step;
     of_.kernel_(&job_);
@@ -291,7 +255,7 @@ class LayeredPackets::Packet {
     for (std::size_t l = 0; l < std::size_t{Row::most_lanes}; ++l) {
       const std::size_t from = l < used_ ? l : 0;
       job_.tolerance[l] = static_cast<float>(tolerance_[from]);
-      job_.length[l] = above(inside_[from].end - inside_[from].begin + beyond(from));
+      job_.length[l] = single_above(inside_[from].end - inside_[from].begin + beyond(from));
       job_.to_eye[0][l] = -static_cast<float>(ray_[from].direction.x);
       job_.to_eye[1][l] = -static_cast<float>(ray_[from].direction.y);
       job_.to_eye[2][l] = -static_cast<float>(ray_[from].direction.z);
@@ -332,14 +296,14 @@ class LayeredPackets::Packet {
   bool write(std::size_t lane, std::size_t at, const MergedPart& part, float* head) {
     head[Row::length] = static_cast<float>(part.range.end - part.range.begin);
     head[Row::left] = static_cast<float>(inside_[lane].end - part.range.begin + beyond(lane));
-    head[Row::position_error] = above(part.position_error);
-    head[Row::left_out] = above(part.left_out);
+    head[Row::position_error] = single_above(part.position_error);
+    head[Row::left_out] = single_above(part.left_out);
     head[Row::present] = 0;
     const auto set = [&](Row::Kind kind) { head[Row::kind] = static_cast<float>(kind); };
     switch (part.kind) {
       case MergedPart::Kind::unknown:
         set(Row::unknown);
-        head[Row::opacity] = above(part.opacity);
+        head[Row::opacity] = single_above(part.opacity);
         return true;
       case MergedPart::Kind::absent:
         set(Row::absent);
@@ -350,14 +314,14 @@ class LayeredPackets::Packet {
         head[Row::color] = static_cast<float>(part.color.r);
         head[Row::color + 1] = static_cast<float>(part.color.g);
         head[Row::color + 2] = static_cast<float>(part.color.b);
-        head[Row::error] = above(part.error);
+        head[Row::error] = single_above(part.error);
         return true;
       case MergedPart::Kind::mark:
       case MergedPart::Kind::doubt:
         set(part.kind == MergedPart::Kind::mark ? Row::mark : Row::doubt);
-        head[Row::opacity] = above(part.opacity);
-        head[Row::mark_number] =
-            static_cast<float>(mark_of_[part.layer] + static_cast<int>(part.isosurface));
+        head[Row::opacity] = single_above(part.opacity);
+        head[Row::mark_number] = static_cast<float>(of_.seen_[part.layer].first_mark +
+                                                    static_cast<int>(part.isosurface));
         return true;
       case MergedPart::Kind::medium:
         break;
@@ -375,7 +339,7 @@ class LayeredPackets::Packet {
       float* const to = &part_[(k * Row::most_lanes * Row::of_a_ray + at) * Row::part_fields];
       bool absorbs = true;
       for_lanes =
-          write_part(of_.seen_[k], merge.key()[k], *merge.stretches()[k], part, to, absorbs);
+          write_part(of_.seen_[k], merge.key()[k], *merge.stretches()[k], part.range, to, absorbs);
       if (absorbs) present |= 1 << k;
     }
     if (for_lanes && present == 0) {
@@ -387,95 +351,15 @@ class LayeredPackets::Packet {
     return true;
   }
 
-  /// Writes what there is of a layer on a part. Returns false if it is not for lanes.
-  static bool write_part(const Seen& layer, int number, const LayerStretch& stretch,
-                         const MergedPart& part, float* to, bool& absorbs) {
-    if (!layer.in_lanes) return false;
-    to[Row::function] = static_cast<float>(layer.first_function + number);
-    if (stretch.by_cell) {
-      write_cell(stretch.cell, part.range, to);
-      return true;
-    }
-    const LayerLook& look = layer.source->look();
-    const CubicBernstein<double> data = channel_on(stretch, 0, part.range);
-    const double least = data.hull_min(), most = data.hull_max();
-    const bool is_constant = least == most && !(stretch.value_error[0] > 0);
-    to[Row::part_kind] = is_constant ? Row::constant : Row::curve;
-    to[Row::rounding] = 0;
-    if (is_constant) {
-      const Material<double> material =
-          layer.source->functions()[static_cast<std::size_t>(number)].table[0].table.evaluate(
-              least);
-      absorbs = material.extinction > 0;
-      to[Row::data] = static_cast<float>(material.extinction);
-      to[Row::data + 1] = static_cast<float>(material.color.r);
-      to[Row::data + 2] = static_cast<float>(material.color.g);
-      to[Row::data + 3] = static_cast<float>(material.color.b);
-    } else {
-      const BinnedTransfer& function = *layer.function[static_cast<std::size_t>(number)];
-      const float size = largest_size(data);
-      const float rounding = 8 * unit * size + 24 * unit * static_cast<float>(most - least) +
-                             above(stretch.value_error[0]);
-      if (!(size < 1e30f) || !(2 * rounding < function.narrowest)) return false;
-      bool jumps = false;
-      absorbs = may_absorb(function, true, static_cast<float>(least) - rounding,
-                           static_cast<float>(most) + rounding, jumps);
-      if (jumps) return false;
-      for (int b = 0; b < 4; ++b) to[Row::data + b] = static_cast<float>(data.b[b]);
-      to[Row::rounding] = rounding;
-    }
-    if (!absorbs || !look.is_lit()) return true;
-    return write_gradient(look, stretch, part, to);
-  }
-
-  static void write_cell(const StructuredWalk<double>::Step& cell, Interval<double> range,
-                         float* to) {
-    to[Row::part_kind] = Row::cell;
-    to[Row::rounding] = 0;
-    const double length = cell.t_end - cell.t_begin;
-    const double from = std::max((range.begin - cell.t_begin) / length, 0.0);
-    const double end = std::min((range.end - cell.t_begin) / length, 1.0);
-    for (int a = 0; a < 3; ++a) {
-      const double way = cell.exit[a] - cell.entry[a];
-      to[Row::place + a] = static_cast<float>(cell.cell[a]);
-      to[Row::entry_in_cell + a] = static_cast<float>(cell.entry[a] + from * way);
-      to[Row::exit_in_cell + a] =
-          static_cast<float>(end < 1 ? cell.entry[a] + end * way : cell.exit[a]);
-    }
-  }
-
-  static bool write_gradient(const LayerLook& look, const LayerStretch& stretch,
-                             const MergedPart& part, float* to) {
-    if (stretch.gradient_doubt > 0) return false;
-    const double length = stretch.end - stretch.begin;
-    const double from = std::max((part.range.begin - stretch.begin) / length, 0.0);
-    const double end = std::min((part.range.end - stretch.begin) / length, 1.0);
-    const bool whole = from <= 0 && end >= 1;
-    double largest = 0;
-    const auto put = [&](const CubicBernstein<double>& f, float* at) {
-      const CubicBernstein<double> there = whole ? f : restrict_to(f, from, end);
-      for (int b = 0; b < 4; ++b) {
-        at[b] = static_cast<float>(there.b[b]);
-        largest = std::max(largest, std::fabs(there.b[b]));
-      }
-    };
-    if (look.reflection() != nullptr) {
-      for (int c = 0; c < 3; ++c) put(stretch.gradient[c], to + Row::gradient + 4 * c);
-    } else {
-      std::fill_n(to + Row::gradient, 12, 0.0f);
-    }
-    if (look.extinction_factor() != nullptr) put(stretch.magnitude, to + Row::magnitude);
-    return has_moderate_square(largest);
-  }
-
   /// Calls visit(part) for what layers there are on a part of a lane's ray, which is followed anew.
   /// What has no length has rows of its own.
   template <class Visit>
   void follow_again(std::size_t lane, Interval<double> range, const Visit& visit) {
     if (again_.start({ray_[lane], range}).empty()) return;
     for (MergedPart part; again_.next(part);) {
-      const bool is_seen = part.kind == MergedPart::Kind::medium || part.left_out > 0;
-      if (is_seen && part.range.begin < part.range.end) visit(part);
+      const bool has_length =
+          part.kind == MergedPart::Kind::medium || part.kind == MergedPart::Kind::absent;
+      if (has_length) visit(part);
     }
   }
 
@@ -514,15 +398,7 @@ class LayeredPackets::Packet {
     });
     // Nothing is left, unless that was charged.
     if (!integrator.done()) integrator.set_remaining_length(0);
-    const RayResult found = integrator.result();
-    job_.handed[lane] = {found.optical_depth,
-                         found.opacity,
-                         std::exp(-found.optical_depth),
-                         {found.radiance.r, found.radiance.g, found.radiance.b},
-                         found.error,
-                         opacity,
-                         static_cast<std::uint8_t>(found.proved),
-                         1};
+    job_.handed[lane] = handed_back(integrator.result(), opacity);
     return true;
   }
 
@@ -534,12 +410,7 @@ class LayeredPackets::Packet {
     if (!is_one_table(function) || source.look().extinction_factor() != nullptr) {
       return source.most_extinction();
     }
-    const PiecewiseLinear<double>& table = function.table[0].table;
-    const CubicBernstein<double>& data = stretch.data[0];
-    const double off = data_rounding(data) + stretch.value_error[0];
-    return sensitivity(table, table.interval(data.hull_min() - off),
-                       table.interval(data.hull_max() + off), off)
-        .largest_extinction;
+    return most_extinction_on(function.table[0].table, stretch.data[0], stretch.value_error[0]);
   }
 
   const LayeredPackets& of_;
@@ -550,9 +421,7 @@ class LayeredPackets::Packet {
   std::vector<MergedPart> row_;   ///< what rows were made from
   std::deque<LayerMerge> merge_;  ///< of each lane
   LayerMerge again_;              ///< of what lanes are not for
-  std::vector<const LayerSource*> sources_;
   MediumParts media_;
-  std::vector<int> mark_of_;  ///< number of each layer's first mark
   std::array<PellucidRayResult, Row::most_lanes> results_{};
   // Of the lanes' rays.
   std::array<Interval<double>, Row::most_lanes> inside_{};
@@ -566,6 +435,7 @@ std::vector<RayResult> LayeredPackets::integrate(const std::vector<RayPart>& par
                                                  const std::vector<double>& tolerances,
                                                  const std::stop_token& stop) const {
   std::vector<RayResult> results(parts.size(), missed_ray_result());
+  if (parts.empty()) return results;
   Packet packet(*this);
   for (std::size_t i = 0; i < parts.size() && !stop.stop_requested(); ++i) {
     if (packet.take(parts[i], tolerances[i], i) && packet.is_full()) packet.follow(results, stop);

@@ -3,13 +3,11 @@
 
 #include <deque>
 #include <memory>
-#include <optional>
 #include <stop_token>
 #include <vector>
 
 #include "clipped_layer.h"
-#include "layer_stream.h"
-#include "pellucid/packet/layered_interface.h"
+#include "layer_rows.h"
 #include "pellucid/packet/light.h"
 #include "pellucid/scene/binned_transfer_storage.h"
 #include "pellucid/simd/instruction_set.h"
@@ -32,8 +30,8 @@ class LayeredPackets {
   /// Returns whether there are packets for a layer like this, with frames as its setting says.
   static bool suit(const LayerSetting& setting);
 
-  /// Returns what the parts gather, each off by at most the tolerance beside it; what clips'
-  /// positions are off by is not counted. An infinite error leaves a part to the general path. Once
+  /// Returns what the parts gather, each off by at most the tolerance beside it. Errors of the
+  /// positions of clips are not counted. An infinite error leaves a part to the general path. Once
   /// `stop` is requested, results do not matter.
   std::vector<RayResult> integrate(const std::vector<RayPart>& parts,
                                    const std::vector<double>& tolerances,
@@ -48,22 +46,11 @@ class LayeredPackets {
                  bool depth, Kernel kernel);
   void add(const ClippedLayer& layer, const PacketLight* lights);
 
-  /// A layer as packets see it.
-  struct Seen {
-    const LayerSource* source = nullptr;
-    int first_function = 0;  ///< number of its first one
-    bool in_lanes = false;   ///< whether packets are for it at all
-    std::optional<BinnedTransferStorage> factor;
-    std::optional<PacketLight> light;
-    std::vector<const BinnedTransfer*> function;  ///< each of its functions
-    PellucidPacketJob grid{};                     ///< of the cells that its stretches tell
-  };
-
   const std::vector<ClippedLayer>& layers_;
   const std::vector<LightSource<double>>& lights_;
   const RayTolerance wanted_;
   Kernel kernel_;
-  std::deque<Seen> seen_;
+  std::deque<SeenLayer> seen_;  ///< addresses stay
   std::deque<BinnedTransferStorage> functions_;
   Vec3<double> origin_;  ///< of places in the packets' world
   double extent_ = 0;    ///< how far layers and lights are from it
