@@ -5,8 +5,8 @@
 
 extern "C" {
 
-/// What comes next on a ray through several layers, in records of floats: a head and, for each
-/// layer that is there, a part.
+/// The next step of a ray through several layers, in records of floats: a head and, for each layer
+/// that is there, a part.
 struct PellucidLayerRow {
   enum Kind : int {
     medium,   ///< of the layers that `present` names
@@ -75,7 +75,7 @@ struct PellucidLayeredJob {
   std::int32_t layers;
   const void* const* functions;  ///< BinnedTransfer of each
   const void* const* light;      ///< PacketLight of each layer; null: unlit
-  /// Of each layer the grid whose cells parts name; null: none do.
+  /// The grid of each layer whose cells parts name; null: they name none.
   const PellucidPacketJob* const* grid;
   double largest_color, largest_extinction;
   std::int32_t depth;  ///< whether results are to say where half of the opacity is

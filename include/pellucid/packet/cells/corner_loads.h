@@ -23,6 +23,31 @@ void repeat_border(const Place* cell, const Place* from, CellCorners<T>& corners
   }
 }
 
+/// Data along ways through cells, in binary32.
+template <class F>
+struct CellCubic {
+  CubicBernstein<F> data;  ///< NaN in vacuum: one corner that is NaN makes all of it so
+  F last_rise;             ///< of the coefficients
+  F range;                 ///< of the corners
+  F rounding;
+
+  /// `lower`, `upper`: of the corners. Of their differences from one of them: what is rounded is
+  /// their range, by 13 u in trilinear_cubic(), 3 u in places and 1 u in themselves, and the value
+  /// itself only at the end and in cuts.
+  CellCubic(const CellCorners<F>& corners, F lower, F upper, const Vec3<F>& entry,
+            const Vec3<F>& exit) noexcept {
+    CellCorners<F> differences;
+    const F* const v = corners.value;
+    for (int n = 0; n < 8; ++n) differences.value[n] = v[n] - v[0];
+    data = trilinear_cubic(differences, entry, exit);
+    last_rise = data.b[3] - data.b[2];
+    for (F& b : data.b) b += v[0];
+    constexpr float u = rounding_unit<float>;
+    range = upper - lower;
+    rounding = F(8 * u) * max(abs(lower), abs(upper)) + F(24 * u) * range;
+  }
+};
+
 /// Loads the corners of cells, one in each lane, that are given in their block.
 template <int N>
 class CornerLoads {

@@ -11,7 +11,8 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// Loads the corners of cells, one in each lane, in double: as they are.
+/// Loads the corners of cells, one in each lane, as they are: in double, or in binary32 where that
+/// holds them.
 template <int N>
 class ExactCorners {
  public:
@@ -42,11 +43,24 @@ class ExactCorners {
     if (padded_) repeat_border(cell_, from_, corners);
     return corners;
   }
+  /// The same in binary32, of a type that it holds.
+  template <class Value>
+  CellCorners<F> in_single(const Value* data) const noexcept {
+    const Value* at[N];
+    for (int l = 0; l < N; ++l) at[l] = data + base_[l];
+    CellCorners<F> corners = load_single<Value>(at);
+    if (padded_) repeat_border(cell_, from_, corners);
+    return corners;
+  }
 
  private:
   template <class Value>
-  CellCorners<D> load(const Value* const* at) const noexcept {
+  CellCorners<F> load_single(const Value* const* at) const noexcept {
     static constexpr std::int32_t none_on[N] = {};
+    return load_corners<Value, N>(at, none_on, row_, slice_);
+  }
+  template <class Value>
+  CellCorners<D> load(const Value* const* at) const noexcept {
     CellCorners<D> result;
     if constexpr (sizeof(Value) > 2 && !std::is_same_v<Value, float>) {
       for (int n = 0; n < 8; ++n) {
@@ -56,7 +70,7 @@ class ExactCorners {
         result.value[n] = D::load(of_lane);
       }
     } else {
-      const CellCorners<F> corners = load_corners<Value, N>(at, none_on, row_, slice_);
+      const CellCorners<F> corners = load_single<Value>(at);
       for (int n = 0; n < 8; ++n) result.value[n] = convert<double>(corners.value[n]);
     }
     return result;

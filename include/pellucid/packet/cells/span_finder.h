@@ -129,24 +129,14 @@ class SpanFinder {
     }
     M found = ready & (upper >= F(transfer_.support_min)) & (lower <= F(transfer_.support_max)) &
               (step.end > step.begin);
-    // Of the values' differences from one of them: what is rounded is their range, by 13 u in
-    // trilinear_cubic(), 3 u in places and 1 u in themselves, and the value itself only at the end
-    // and in cuts.
-    CellCorners<F> differences;
-    for (int n = 0; n < 8; ++n) differences.value[n] = v[n] - v[0];
-    CubicBernstein<F> data =
-        trilinear_cubic(differences, cells_.place(step, step.begin), cells_.place(step, step.end));
-    // Vacuum: one corner that is NaN makes all of it so.
+    const CellCubic<F> cubic(step.corners, lower, upper, cells_.place(step, step.begin),
+                             cells_.place(step, step.end));
+    const CubicBernstein<F>& data = cubic.data;
     if constexpr (!std::is_integral_v<Value>) found = found & !is_nan(data.b[0]);
-    const F last_rise = data.b[3] - data.b[2];
-    for (F& b : data.b) b += v[0];
-    constexpr float u = rounding_unit<float>;
-    const F range = upper - lower;
-    const F rounding = F(8 * u) * max(abs(lower), abs(upper)) + F(24 * u) * range;
-    if (any(found)) put_down(found, data, rounding, rows);
+    if (any(found)) put_down(found, data, cubic.rounding, rows);
     const F per_length = F(1) / convert<float>(step.end - step.begin);
-    skip(ready, data.b[3], rounding, F(3) * last_rise * per_length,
-         F(160 * u) * range * per_length);
+    skip(ready, data.b[3], cubic.rounding, F(3) * cubic.last_rise * per_length,
+         F(160 * rounding_unit<float>) * cubic.range * per_length);
   }
 
   /// Puts down what of the lanes' cells is a span.

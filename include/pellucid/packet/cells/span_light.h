@@ -15,7 +15,7 @@ inline float place_rounding(const PacketLight& light) noexcept {
   return 8 * rounding_unit<float> * light.farthest;
 }
 
-/// What is known of the light on a piece of a span before any node is shaded.
+/// Bounds on the light of a piece of a span, before any node is shaded.
 template <int N>
 struct LightOfPiece {
   using F = Batch<float, N>;
@@ -83,8 +83,8 @@ class SpanLight {
 
   bool has_factor() const noexcept { return light_.factor != nullptr; }
   float largest_factor() const noexcept { return light_.largest_factor; }
-  /// Where the next piece has to end, as a share of the cell: where g·l changes its sign, or g·h if
-  /// highlights have a kink there, or the magnitude comes to a control point of the factor.
+  /// Returns where the next piece has to end, as a share of the cell: g·l changes its sign there, or
+  /// g·h if highlights have a kink, or the magnitude comes to a control point of the factor.
   F kink() const noexcept { return min(kink_, factor_end_); }
   /// The lanes have gone past this share of their cells.
   void go_past(M lanes, F to) noexcept {
@@ -289,7 +289,7 @@ class SpanLight {
     return most;
   }
 
-  /// Where g·l of any light, or g·h, changes its sign first behind `from`; 2: nowhere.
+  /// Returns the first place behind `from` where g·l of any light, or g·h, changes its sign; 2: none.
   [[gnu::noinline]] F next_kink(M lanes, F from) const noexcept {
     F nearest(2);
     from = min(from, F(1));

@@ -9,6 +9,19 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
+/// Returns what rounding does to a segment whose opacity and color are rounded by `unit`, beside
+/// the errors of its depth and color: extinction that is elsewhere in it shows another one of its
+/// colors, which differ by up to `colors`.
+template <class F>
+F segment_rounding(const SegmentResult<F>& s, F unit, F largest_color, F depth_error,
+                   F color_rounding, F colors) noexcept {
+  const F opacity_rounding =
+      unit * s.opacity +
+      min(select(depth_error <= F(1), F(2) * depth_error * s.transparency, F(1)), F(1));
+  return s.opacity * (unit * largest_color + color_rounding) + largest_color * opacity_rounding +
+         colors * min(depth_error, F(1));
+}
+
 /// The next piece of spans in lanes: what lies in front of the first corner of the extinction, or
 /// less.
 template <class T, int N>
@@ -32,17 +45,11 @@ struct SpanPiece {
   /// Computes `rounding` from these errors.
   void add_up_rounding(Single largest_color) noexcept {
     constexpr float colored = (is_single<F> ? 32 : 12) * rounding_unit<float>;  // and positions
-    const SegmentResult<Single>& s = found.segment;
-    const Single opacity_rounding =
-        Single(colored) * s.opacity +
-        min(select(depth_error <= Single(1), Single(2) * depth_error * s.transparency, Single(1)),
-            Single(1));
-    // Extinction that is elsewhere in the piece shows another color of it.
     const CubicBernstein<F>& f = parts.front;
     const Single colors =
         min(spread.slope * convert<float>(f.hull_max() - f.hull_min()), spread.range);
-    rounding = s.opacity * (Single(colored) * largest_color + color_rounding) +
-               largest_color * opacity_rounding + colors * min(depth_error, Single(1));
+    rounding = segment_rounding(found.segment, Single(colored), largest_color, depth_error,
+                                color_rounding, colors);
   }
 };
 
@@ -59,7 +66,7 @@ void reload(const BinnedTransfer& transfer, const mask_t<F>& /*lanes*/, index_t<
   extinction = load_extinction<F>(transfer, interval);
 }
 
-/// As color_kink_error(), in these lanes.
+/// Returns color_kink_error() in these lanes.
 template <class F>
 in_float_t<F> kink_error(const BinnedTransfer& transfer, const mask_t<F>& /*lanes*/, F lower,
                          F upper) noexcept {

@@ -57,13 +57,14 @@ ExtinctionInterval<F> select(const mask_t<F>& mask, const ExtinctionInterval<F>&
           select(mask, a.color_slope, b.color_slope)};
 }
 template <class F>
+Rgb<F> select(const mask_t<F>& mask, const Rgb<F>& a, const Rgb<F>& b) noexcept {
+  return {select(mask, a.r, b.r), select(mask, a.g, b.g), select(mask, a.b, b.b)};
+}
+template <class F>
 ColorInterval<F> select(const mask_t<F>& mask, const ColorInterval<F>& a,
                         const ColorInterval<F>& b) noexcept {
-  const auto of = [&](const Rgb<F>& x, const Rgb<F>& y) noexcept {
-    return Rgb<F>{select(mask, x.r, y.r), select(mask, x.g, y.g), select(mask, x.b, y.b)};
-  };
   return {select(mask, a.lower, b.lower), select(mask, a.upper, b.upper),
-          of(a.at_lower, b.at_lower), of(a.slope, b.slope)};
+          select(mask, a.at_lower, b.at_lower), select(mask, a.slope, b.slope)};
 }
 
 // The same for several functions as for one.

@@ -6,6 +6,7 @@
 #include "pellucid/packet/layered_interface.h"
 #include "pellucid/packet/layers/cell_loads.h"
 #include "pellucid/packet/layers/lane_transfers.h"
+#include "pellucid/packet/layers/piece_sum.h"
 #include "pellucid/packet/opacity_trace.h"
 #include "pellucid/packet/packet_fold.h"
 
@@ -33,10 +34,9 @@ class LayeredPacket {
 
   explicit LayeredPacket(const PellucidLayeredJob& job) noexcept
       : layers_(job.layers),
-        depth_(job.depth != 0),
         largest_color_(static_cast<float>(job.largest_color)),
         fold_(loaded(job.tolerance), job.largest_extinction, job.largest_color, loaded(job.length)),
-        trace_(depth_) {
+        trace_(job.depth != 0) {
     const Vec3<F> to_eye{loaded(job.to_eye[0]), loaded(job.to_eye[1]), loaded(job.to_eye[2])};
     for (int k = 0; k < layers_; ++k) {
       new (&layer_[k]) Layer(job, k, to_eye);
@@ -86,8 +86,8 @@ class LayeredPacket {
   }
 
  private:
-  /// How narrow a part of a row may get, and how many pieces there may be, before it is left to the
-  /// caller.
+  /// Limits behind which a row is left to the caller: the least share of a piece, and the number of
+  /// pieces.
   static constexpr float narrowest = 1.0f / 512;
   static constexpr int most_pieces = 40;
 
@@ -216,10 +216,9 @@ class LayeredPacket {
   /// that are not for lanes to `waits`.
   [[gnu::noinline]] M load_cells(Layer& layer, M lanes, const typename CellLoads<N>::Ways& ways,
                                  F* part, M& waits) const noexcept {
-    CubicBernstein<F> data;
-    F rounding;
-    layer.cells.data(lanes, ways, data, rounding);
-    // Vacuum: one corner that is NaN makes all of it so.
+    const CellCubic<F> cubic = layer.cells.data(lanes, ways);
+    const CubicBernstein<F>& data = cubic.data;
+    const F rounding = cubic.rounding;
     const M filled = lanes & !is_nan(data.b[0] + data.b[3]);
     for (int b = 0; b < 4; ++b) {
       part[Row::data + b] = select(lanes, select(filled, data.b[b], F(0)), part[Row::data + b]);
@@ -343,7 +342,7 @@ class LayeredPacket {
     }
     const F to = min(from_ + ahead * place, F(1));
     tried_ += select(on, I(1), I(0));
-    Sum sum;
+    PieceSum<N> sum;
     for (int k = 0; k < layers_; ++k) {
       Layer& layer = layer_[k];
       const M here = on & layer.present;
@@ -355,15 +354,11 @@ class LayeredPacket {
     const F left = left_ - from_ * length_;
     fold_.budget.set_remaining_length(select(on, left, fold_.budget.remaining_length()));
     const F transparency = fold_.transparency(), seen = transparency * s.opacity;
-    // What is off whatever the color: as SpanPiece::add_up_rounding().
+    // What is off whatever the color.
     const F range = min(sum.range(), F(2) * largest_color_);
-    const F opacity_rounding =
-        F(32 * rounding_unit<float>) * s.opacity +
-        min(select(sum.depth_error <= F(1), F(2) * sum.depth_error * s.transparency, F(1)), F(1));
-    const F rounding =
-        s.opacity * (F(32 * rounding_unit<float>) * largest_color_ + sum.color_rounding) +
-        largest_color_ * opacity_rounding + range * min(sum.depth_error, F(1)) +
-        largest_color_ * min(left_out_ * length, F(1));
+    const F rounding = segment_rounding(s, F(32 * rounding_unit<float>), largest_color_,
+                                        sum.depth_error, sum.color_rounding, range) +
+                       largest_color_ * min(left_out_ * length, F(1));
     const F linear = transparency * rounding + seen * sum.color_error;
     const typename RayBudget<F>::SpanShare shares = fold_.budget.span_share(length, s.opacity);
     const F allowed = shares.sum();
@@ -394,8 +389,8 @@ class LayeredPacket {
     }
     if (none(take)) return;
     Rgb<F> color = sum.color();
-    if (any(by_three)) color = select_color(by_three, nodes_color<3>(by_three, length), color);
-    if (any(by_six)) color = select_color(by_six, nodes_color<6>(by_six, length), color);
+    if (any(by_three)) color = select(by_three, nodes_color<3>(by_three, length), color);
+    if (any(by_six)) color = select(by_six, nodes_color<6>(by_six, length), color);
     s.radiance = s.opacity * color;
     fold_.add(take, s);
     const M by_nodes = by_three | by_six;
@@ -413,35 +408,8 @@ class LayeredPacket {
     retire(take);
   }
 
-  /// What the layers of a piece are together.
-  struct Sum {
-    F depth{0}, depth_error{0};
-    F color_rounding{0};  ///< the largest one of any layer
-    F color_error{0};     ///< likewise, of what light and kinks of tables are off by
-    Rgb<F> source{F(0), F(0), F(0)};
-    Rgb<F> lower{F(1e30f), F(1e30f), F(1e30f)}, upper{F(-1e30f), F(-1e30f), F(-1e30f)};
-    F own_range{0};  ///< of a layer that is alone
-    I layers{0};
-    F turns{1}, sharpness{0};
-    M lit{false};
-
-    F range() const noexcept {
-      const F apart = max(largest_component(upper - lower), F(0));
-      return select(layers == I(1), min(own_range, apart), apart);
-    }
-    Rgb<F> color() const noexcept {
-      const M shines = depth > F(0);
-      return select(shines, F(1) / select(shines, depth, F(1)), F(0)) * source;
-    }
-    typename LikeErrors<F>::Signs signs(F range) const noexcept {
-      const F feature[LikeErrors<F>::features] = {F(1) / turns, largest_component(upper),
-                                                  largest_component(lower), range};
-      return LikeErrors<F>::signs(feature);
-    }
-  };
-
   /// Measures the piece of a layer up to `place` of what is left, `to` of the row.
-  [[gnu::noinline]] void measure(Layer& layer, M here, F place, F to, Sum& sum) noexcept {
+  [[gnu::noinline]] void measure(Layer& layer, M here, F place, F to, PieceSum<N>& sum) noexcept {
     SpanPiece<float, N>& piece = layer.piece;
     piece.capped = piece.capped | (place < piece.place);
     piece.crosses = piece.crosses & !(place < piece.place);
@@ -465,30 +433,9 @@ class LayeredPacket {
       upper = lit.bounds.upper.apply(upper);
       own_range = lit.range;
       color_error = lit.color_error;
-      sum.turns = select(here, max(sum.turns, lit.turns), sum.turns);
-      sum.sharpness = select(here, max(sum.sharpness, lit.sharpness), sum.sharpness);
-      sum.lit = sum.lit | here;
+      sum.light_up(here, lit);
     }
-    // Without extinction there is no color.
-    const F depth = select(here, piece.seen.depth, F(0));
-    sum.depth += depth;
-    sum.depth_error += select(here, piece.depth_error, F(0));
-    const M shines = here & ((depth > F(0)) | (piece.depth_error > F(0)));
-    const auto extend = [&](F& low, F& high, F least, F most) noexcept {
-      low = select(shines, min(low, least), low);
-      high = select(shines, max(high, most), high);
-    };
-    extend(sum.lower.r, sum.upper.r, lower.r, upper.r);
-    extend(sum.lower.g, sum.upper.g, lower.g, upper.g);
-    extend(sum.lower.b, sum.upper.b, lower.b, upper.b);
-    sum.layers += select(shines, I(1), I(0));
-    sum.own_range = select(shines, max(sum.own_range, own_range), sum.own_range);
-    sum.color_rounding =
-        select(here, max(sum.color_rounding, piece.color_rounding), sum.color_rounding);
-    sum.color_error = select(shines, max(sum.color_error, color_error), sum.color_error);
-    sum.source.r += select(here, depth * mean.r, F(0));
-    sum.source.g += select(here, depth * mean.g, F(0));
-    sum.source.b += select(here, depth * mean.b, F(0));
+    sum.add(here, piece, mean, {lower, upper, own_range, color_error});
   }
 
   /// The color of pieces by Nodes Gauss nodes.
@@ -527,9 +474,6 @@ class LayeredPacket {
             color_at(layer.transfers, clamp(value, piece.seen.color_lower, piece.seen.color_upper),
                      here, layer.span.color)};
   }
-  static Rgb<F> select_color(M lanes, const Rgb<F>& a, const Rgb<F>& b) noexcept {
-    return {select(lanes, a.r, b.r), select(lanes, a.g, b.g), select(lanes, a.b, b.b)};
-  }
 
   /// The lanes' pieces were taken; where one was halved, its other half comes next.
   void go_past(M take, F place, F to) noexcept {
@@ -561,7 +505,7 @@ class LayeredPacket {
     pending_ = pending_ & !lanes;
   }
 
-  /// Says what is left of the rows that wait for the caller, and what it may cost.
+  /// Writes the shares of rows that wait for the caller, and the errors allowed for them.
   void ask_caller() noexcept {
     const F length = (F(1) - from_) * length_;
     fold_.budget.set_remaining_length(
@@ -598,7 +542,6 @@ class LayeredPacket {
   }
 
   int layers_;
-  bool depth_;
   F largest_color_;
   PellucidLayeredJob* job_ = nullptr;
   union {
