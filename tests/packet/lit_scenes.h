@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -121,6 +124,17 @@ inline Image frame(const Scene& scene, std::optional<InstructionSet> set,
   options.threads = threads;
   options.instruction_set = set;
   return render(scene, options, report);
+}
+
+/// Expects each channel of each pixel within what both frames say, and `beside`. Ends at the first
+/// one that is not.
+inline void expect_within_errors(const Image& image, const Image& truth, double beside) {
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const double said = static_cast<double>(image.error[i]) + static_cast<double>(truth.error[i]);
+    for (std::size_t c = 0; c < 4; ++c) {
+      ASSERT_NEAR(image.pixels[i][c], truth.pixels[i][c], said + beside) << "pixel " << i;
+    }
+  }
 }
 
 }  // namespace pellucid
