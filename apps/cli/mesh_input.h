@@ -29,7 +29,7 @@ struct MeshOptions {
 /// What INPUT may be besides a volume, for help texts.
 std::string mesh_input_help();
 
-/// Whether INPUT is a mesh: by --solution, or by the file.
+/// Returns whether INPUT is a mesh: by --solution, or by the file.
 bool is_mesh(const std::string& input, const MeshOptions& options);
 /// Throws UsageError.
 MeshSource mesh_source(const std::string& input, const MeshOptions& options);

@@ -83,8 +83,8 @@ class SpanLight {
 
   bool has_factor() const noexcept { return light_.factor != nullptr; }
   float largest_factor() const noexcept { return light_.largest_factor; }
-  /// Returns where the next piece has to end, as a share of the cell: g·l changes its sign there, or
-  /// g·h if highlights have a kink, or the magnitude comes to a control point of the factor.
+  /// Returns where the next piece has to end, as a share of the cell: g·l changes its sign there,
+  /// or g·h if highlights have a kink, or the magnitude comes to a control point of the factor.
   F kink() const noexcept { return min(kink_, factor_end_); }
   /// The lanes have gone past this share of their cells.
   void go_past(M lanes, F to) noexcept {
@@ -289,7 +289,8 @@ class SpanLight {
     return most;
   }
 
-  /// Returns the first place behind `from` where g·l of any light, or g·h, changes its sign; 2: none.
+  /// Returns the first place behind `from` where g·l of any light, or g·h, changes its sign; 2:
+  /// none.
   [[gnu::noinline]] F next_kink(M lanes, F from) const noexcept {
     F nearest(2);
     from = min(from, F(1));
