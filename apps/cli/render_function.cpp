@@ -67,9 +67,7 @@ void set_transfer_function(const RenderArguments& arguments, SceneDescription& d
     }
     LayerDescription& layer = description.layers.front();
     layer.transfer_function = PresetDescription{arguments.preset, {}};
-    const bool exact = description.integration.method == Method::exact &&
-                       (arguments.method.empty() || arguments.method == "exact");
-    const bool may_be_lit = exact && !layer.projection && arguments.projection.empty();
+    const bool may_be_lit = !layer.projection && arguments.projection.empty();
     if (find_preset(arguments.preset)->lit && may_be_lit && !layer.shading) layer.shading.emplace();
     return;
   }

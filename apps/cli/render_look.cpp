@@ -55,8 +55,7 @@ void want_look(const RenderArguments& arguments, PreparedScene& prepared) {
                      "its colors and opacities, or add --tf or --preset");
   }
   const bool is_default = prepared.transfer_function_from == "default" && !arguments.is_scene() &&
-                          prepared.description.layers.size() == 1 &&
-                          prepared.description.integration.method == Method::exact;
+                          prepared.description.layers.size() == 1;
   if (arguments.look.empty() && !is_default) return;
   WantedLook look;
   look.name = lower_case(arguments.look);

@@ -20,17 +20,32 @@ std::string method_text(const RenderArguments& arguments, const Integration& int
   return arguments.reference ? "reference" : std::string(method_name(integration.method));
 }
 
-/// The sampling methods know no tolerance: automatic is float for them. Those of meshes are in
-/// double alone.
+/// Whether a method that samples does so in packets, in float: one plain layer (sampled_path.h has
+/// the others).
+bool samples_packets(const Scene& scene) {
+  const Layer* const layer = only_layer(scene);
+  if (layer == nullptr || is_lit(*layer) || !layer->clips.empty() || !scene.clips.empty()) {
+    return false;
+  }
+  const Method method = scene.integration.method;
+  const auto* const volume = std::get_if<VolumeContent>(&layer->content);
+  if (volume != nullptr) {
+    return !volume->mask && (method == Method::midpoint || method == Method::preintegrated);
+  }
+  return std::holds_alternative<ChannelsContent>(layer->content) && method == Method::midpoint;
+}
+
+/// The sampling methods know no tolerance: automatic is float for them where they have packets, and
+/// else they are in double alone.
 std::string precision_text(const RenderArguments& arguments, const Scene& scene) {
   const Integration& integration = scene.integration;
-  const bool always_double =
-      only_content<MeshContent>(scene) != nullptr && integration.method != Method::exact;
+  const bool exact = integration.method == Method::exact;
+  const bool always_double = !exact && !samples_packets(scene);
   if (arguments.reference || always_double || integration.precision == Precision::float64) {
     return "double";
   }
   if (integration.precision == Precision::float32) return "float";
-  return integration.method == Method::exact ? "automatic" : "float";
+  return exact ? "automatic" : "float";
 }
 
 std::string grade_text(Grade grade) {
@@ -52,8 +67,12 @@ std::vector<NamedCount> by_rule(const RuleCounts& spans) {
 }
 
 bool has_step(const RenderArguments& arguments, const Scene& scene) {
-  return !arguments.reference && only_content<MeshContent>(scene) == nullptr &&
-         scene.integration.method != Method::exact;
+  const Method method = scene.integration.method;
+  const bool in_cells =
+      takes_cells(method) && std::ranges::all_of(scene.layers, [](const Layer& layer) {
+        return !layer.visible || std::holds_alternative<MeshContent>(layer.content);
+      });
+  return !arguments.reference && method != Method::exact && !in_cells;
 }
 
 Json channel_json(const std::string& name, const std::string& unit, const VolumeData& values,

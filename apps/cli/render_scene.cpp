@@ -366,10 +366,15 @@ SceneDescription describe(const RenderArguments& arguments,
     }
   }
   if (arguments.samples) description.samples = *arguments.samples;
-  if (arguments.step && layer.mesh) {
-    throw UsageError("--step: a mesh is rendered cell by cell, without steps; drop it");
-  }
   set_integration(arguments, description.integration);
+  const bool only_meshes = std::ranges::all_of(
+      description.layers, [](const LayerDescription& one) { return one.mesh.has_value(); });
+  if (arguments.step && only_meshes && takes_cells(description.integration.method)) {
+    throw UsageError(
+        fmt::format("--step: the method {} goes from tetrahedron to tetrahedron, "
+                    "without steps; drop it, or take midpoint",
+                    method_name(description.integration.method)));
+  }
   return description;
 }
 

@@ -13,8 +13,7 @@
 #include "layers/layered_packets.h"
 #include "projection/projected_tracer.h"
 #include "ray_tracer.h"
-#include "sample/packet_sampler.h"
-#include "sample/preintegrated_storage.h"
+#include "sample/sampled_path.h"
 
 namespace pellucid {
 
@@ -56,9 +55,8 @@ std::vector<RayResult> LayeredPackets::integrate(const std::vector<RayPart>&,
   throw left_out("what follows several layers in packets");
 }
 
-std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task) {
-  if (task.integration.method == Method::exact) return nullptr;
-  throw left_out("what samples several variables");
+std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask&) {
+  return nullptr;
 }
 
 std::unique_ptr<const RayTracer> make_mesh_tracer(const TracerTask&) {
@@ -73,9 +71,7 @@ std::unique_ptr<const LayerSource> make_label_source(const LayerTask&) {
   throw left_out("what renders labels");
 }
 
-std::unique_ptr<const PacketSamplerTracer> PacketSamplerTracer::make(
-    const Volume&, const BlockClasses&, const PiecewiseLinear<float>&, const PreintegratedTable*,
-    double, double, std::optional<InstructionSet>) {
+std::unique_ptr<const RayTracer> make_packet_sampler(const TracerTask&) {
   throw left_out("what samples rays");
 }
 
@@ -83,8 +79,21 @@ std::vector<RayResult> PacketSamplerTracer::trace(const std::vector<RayPart>&) c
   throw left_out("what samples rays");
 }
 
-PreintegratedStorage::PreintegratedStorage(const PiecewiseLinear<double>&, double, double, double,
-                                           const ParallelFor&) {
+SamplingPlan::SamplingPlan(const std::vector<ClippedLayer>&, const Integration&, double, bool)
+    : rule_(SegmentRule::midpoint), by_cells_(false), step_(0), stop_(0), depth_(false) {
+  throw left_out("what samples rays");
+}
+
+class SampledPath::LayerOnRay {};
+
+SampledPath::SampledPath(const std::vector<ClippedLayer>& layers,
+                         const std::vector<LightSource<double>>& lights, const SamplingPlan& plan,
+                         double largest_color)
+    : plan_(plan), lights_(lights), merge_(layers, lights, largest_color, false) {}
+
+SampledPath::~SampledPath() = default;
+
+RayResult SampledPath::sample(const RayPart&) {
   throw left_out("what samples rays");
 }
 

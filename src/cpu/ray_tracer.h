@@ -98,13 +98,13 @@ struct TracerTask {
 std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task);
 /// Of a volume's isosurfaces. Null where packets do not suit them, or there is more to be seen.
 std::unique_ptr<const RayTracer> make_surface_tracer(const TracerTask& task);
-/// Of channels with a multivariate transfer function. Null for the method `exact` where packets do
-/// not suit the rays.
+/// Of channels with a multivariate transfer function. Null where packets do not suit the rays.
 std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task);
-/// Of a mesh with either function. Null for the method `exact` and a function of several variables
-/// where packets do not suit the rays.
+/// Of a mesh with either function. Null for a function of several variables where packets do not
+/// suit the rays.
 std::unique_ptr<const RayTracer> make_mesh_tracer(const TracerTask& task);
-/// The same, by one of the methods for comparison.
-std::unique_ptr<const RayTracer> make_mesh_sampler(const TracerTask& task);
+/// Of whole rays, by one of the methods for comparison, without depths. Null where packets do not
+/// suit the layer or the method: it is sampled ray by ray.
+std::unique_ptr<const RayTracer> make_packet_sampler(const TracerTask& task);
 
 }  // namespace pellucid

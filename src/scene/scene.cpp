@@ -262,6 +262,11 @@ void check_backdrop(const Scene& scene) {
 
 }  // namespace
 
+bool takes_cells(Method method) noexcept {
+  return method == Method::homogeneous || method == Method::average || method == Method::partial ||
+         method == Method::linear || method == Method::kniss || method == Method::gaussian;
+}
+
 void check_integration(const Scene& scene) {
   if (scene.backdrop) check_backdrop(scene);
   if (scene.samples < 1 || scene.samples > largest_samples) {
@@ -292,69 +297,50 @@ void check_integration(const Scene& scene) {
 
 void check_method(const Scene& scene) {
   const Method method = scene.integration.method;
+  if (method == Method::exact) return;
   const auto refuse = [&](std::string_view why) {
     throw Error("integration: the method " + std::string(method_name(method)) + " " +
                 std::string(why));
   };
-  if (method == Method::exact) return;
-  const Layer* const layer = only_layer(scene);
-  if (layer == nullptr) {
-    refuse("is for scenes of one layer, but there are " + std::to_string(scene.layers.size()) +
-           "; take exact");
+  bool all_meshes = true, any_gaussians = false, all_of_one_variable = true;
+  for (const Layer& layer : scene.layers) {
+    if (!layer.visible || layer.projection) continue;
+    const auto* const mesh = std::get_if<MeshContent>(&layer.content);
+    const bool multivariate = mesh != nullptr
+                                  ? mesh->multivariate() != nullptr
+                                  : std::holds_alternative<ChannelsContent>(layer.content);
+    all_meshes = all_meshes && mesh != nullptr;
+    any_gaussians = any_gaussians || multivariate;
+    all_of_one_variable = all_of_one_variable && !multivariate;
   }
-  const auto* const mesh = std::get_if<MeshContent>(&layer->content);
-  const auto* const volume = std::get_if<VolumeContent>(&layer->content);
-  if (std::holds_alternative<LabelContent>(layer->content)) {
-    refuse("is for fields, but the scene has labels; take exact");
-  }
-  if (!scene.clips.empty() || !layer->clips.empty()) {
-    refuse("has no clips, but the scene has; take exact");
-  }
-  if (scene.backdrop) refuse("has no backdrop, but the scene has; take exact");
-  if (layer->projection) refuse("has no projections, but the scene has; take exact");
-  if (is_lit(*layer)) {
-    refuse(
-        "has no light, gradient opacity, factors, isosurfaces and slices, but the scene has; take "
-        "exact");
-  }
-  if (!layer->visible) refuse("needs a visible layer; take exact");
-  if (volume != nullptr && volume->mask) refuse("has no masks, but the scene has; take exact");
-  const bool multivariate = mesh != nullptr ? mesh->multivariate() != nullptr : volume == nullptr;
   switch (method) {
-    case Method::exact:
-    case Method::linear:
-      return;
     case Method::homogeneous:
     case Method::average:
     case Method::partial:
-      if (mesh != nullptr) return;
-      refuse(
-          "is for the cells of a mesh, but the scene has a grid; take midpoint, trapezoid or "
-          "linear there");
+      if (!all_meshes) {
+        refuse(
+            "is for the cells of a mesh, but the scene has other data; take midpoint, trapezoid or "
+            "linear there");
+      }
       return;
     case Method::preintegrated:
-      if (mesh != nullptr) break;
-      if (!multivariate) return;
-      refuse("looks up a table of one variable, but the scene has channels; take another method");
+      if (!all_of_one_variable) {
+        refuse(
+            "looks up a table of one variable, but the scene has a function of several; take "
+            "another method");
+      }
       return;
     case Method::kniss:
     case Method::gaussian:
-      if (multivariate) return;
-      refuse(
-          "is for Gaussians of channels, but the scene has a transfer function of one variable; "
-          "take another method");
+      if (!any_gaussians) {
+        refuse(
+            "is for Gaussians of channels, but the scene has functions of one variable; take "
+            "another method");
+      }
       return;
-    case Method::rectangle:
-    case Method::taylor:
-    case Method::midpoint:
-    case Method::trapezoid:
-    case Method::simpson:
-      break;
+    default:
+      return;
   }
-  if (mesh == nullptr) return;
-  refuse(
-      "goes in steps through a grid, but the scene has a mesh; take homogeneous, average, "
-      "partial, linear or exact there");
 }
 
 void check_values(const Scene& scene) {

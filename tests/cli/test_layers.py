@@ -109,10 +109,8 @@ class Layers(ProgramTest):
         self.refuse("radius is -1", "a.npy", "--clip", "sphere:1,2,3,-1", code=2)
         self.refuse("--print-tf: labels have colors", "--labels", "labels.npy", "--print-tf",
                     code=2)
-        self.refuse("midpoint is for scenes of one layer", "a.npy", "--layer", "a.npy", "--method",
-                    "midpoint")
-        self.refuse("midpoint has no clips", "a.npy", "--clip", "sphere:1,1,1,1", "--method",
-                    "midpoint")
+        self.refuse("homogeneous is for the cells of a mesh", "a.npy", "--layer", "a.npy",
+                    "--method", "homogeneous")
         two = {"layers": [{"field": {"file": "a.npy"}}, {"field": {"file": "a.npy"}}]}
         self.write("two.json", json.dumps(two))
         self.refuse("--tf: the scene has 2 layers", "two.json", "--tf", "tf.json", code=2)
@@ -159,8 +157,6 @@ class Layers(ProgramTest):
                     "wall.exr")
         self.refuse("none.exr: ", "a.npy", "--backdrop", "none.exr")
         self.refuse("tf.json: ", "a.npy", "--backdrop", "tf.json")
-        self.fail_with("midpoint has no backdrop", "render", "a.npy", "--method", "midpoint",
-                       "--backdrop", "wall.exr", "-o", "o.png")
         self.fail_with("would overwrite the input", "render", "a.npy", "--backdrop", "wall.exr",
                        "-o", "wall.exr", code=2)
 

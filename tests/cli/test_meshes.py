@@ -95,6 +95,9 @@ class Plot3d(ProgramTest):
             self.assertEqual(report["method"], method)
             self.assertIsNone(report["step"])
             self.assertEqual(report["precision"], "double")
+        report = self.report("render", "grid.bin", "--q", "q.bin", "-o", "a.exr", "--size", "16",
+                             "--method", "midpoint", "--step", "0.25")
+        self.assertEqual(report["step"], 0.25)
 
     def test_scene_is_the_same_picture(self):
         gaussian = ["--gaussian", "d=2~1, Momentum_0=0~1; extinction 2; color #ff8040"]
@@ -113,7 +116,6 @@ class Plot3d(ProgramTest):
                 (["--step", "1"], "--step"),
                 (["--channel", "a=gradient_magnitude:value"], "--array"),
                 (["--spacing", "1,1,1"], "--spacing applies to volume files"),
-                (["--method", "midpoint"], "mesh"),
                 (["--method", "kniss"], "Gaussians"),
                 (["--array", "none"], "none"),
                 (["--array", "Density", "--array", "Pressure"], "several arrays"),

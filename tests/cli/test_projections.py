@@ -108,8 +108,6 @@ class Projections(ProgramTest):
         refuse("0 visible layers are projected", "a.npy", "--values", "v.npy", code=1)
         refuse("samples is 2", "a.npy", "--projection", "mean", "--values", "v.npy", "--samples",
                "2", code=1)
-        refuse("has no projections", "a.npy", "--projection", "mean", "-o", "o.png", "--method",
-               "midpoint", code=1)
         refuse("is of one variable", "--channel", "t=a.npy", "--gaussian",
                "t=0.5~0.1; extinction 1; color #ffffff", "--projection", "sum", "-o", "o.exr",
                code=1)

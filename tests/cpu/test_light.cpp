@@ -220,10 +220,6 @@ TEST(Light, RefusesWhatItCannotMean) {
     layer.projection = LayerProjection::maximum;
   });
   refused([](Layer&, Scene& scene) { scene.lights = {{DirectionalLight{{0, 0, 0}}}}; });
-  refused([](Layer& layer, Scene& scene) {
-    layer.shading = Shading{};
-    scene.integration.method = Method::midpoint;
-  });
   EXPECT_THROW(GradientOpacity({{-1, 1}}), Error);
 }
 
@@ -274,8 +270,6 @@ TEST(Light, AFactorIsRefusedWhereItHasNoMeaning) {
   EXPECT_THROW(render(scene), Error);
   scene = seen(of_two_variables(2, 1));
   EXPECT_NO_THROW(render(scene));
-  scene.integration.method = Method::midpoint;
-  EXPECT_THROW(render(scene), Error);
 }
 
 }  // namespace

@@ -313,9 +313,6 @@ TEST(Backdrop, ThatDoesNotFitIsRefused) {
     scene.backdrop = image;
     EXPECT_NE(message().find("in column 0, row 0"), std::string::npos) << message();
   }
-  scene.backdrop = backdrop_of(scene.size, 1);
-  scene.integration.method = Method::midpoint;
-  EXPECT_NE(message().find("backdrop"), std::string::npos) << message();
 }
 
 }  // namespace

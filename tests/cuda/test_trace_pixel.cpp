@@ -130,7 +130,7 @@ TEST(SampleBlocks, GivesTheSamplesOfTheWholeRay) {
         const RayResult found = sample_blocks(given.scene(), ray, HalfOpacity{}.range);
         const RayResult whole =
             sample_ray<float>(given.scene().lit.grid, ray, given.scene().transfer.single,
-                              SamplingRule::midpoint, step, 1, device_stop_tolerance, false);
+                              SegmentRule::midpoint, step, 1, device_stop_tolerance, false);
         taken += found.cells;
         all += whole.cells;
         ASSERT_LE(found.cells, whole.cells);

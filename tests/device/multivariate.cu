@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pellucid/render/camera.h"
 #include "pellucid/render/integrate_multivariate_ray.h"
-#include "pellucid/render/sample_ray.h"
 #include "pellucid/segment/gaussian_nodes.h"
 #include "pellucid/transfer/gaussian_bound.h"
 #include "tests/device/kernel.h"
@@ -64,15 +63,11 @@ PELLUCID_DEVICE_KERNEL(nodes)
 /// One pixel per thread.
 __global__ void render_multivariate(MultichannelGrid grid, MultivariateBlocks blocks,
                                     MultivariateTransfer<double> transfer, RayTolerance wanted,
-                                    CameraFrame<double> camera, bool exact, double step,
-                                    RayResult* pixels) {
+                                    CameraFrame<double> camera, RayResult* pixels) {
   const int pixel = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (pixel >= camera.width * camera.height) return;
   const Ray<double> ray = camera.ray(pixel % camera.width, pixel / camera.width);
-  pixels[pixel] = exact
-                      ? integrate_multivariate_ray(grid, &blocks, ray, transfer, 1.0, wanted, true)
-                      : sample_multivariate_ray(grid, ray, transfer, SamplingRule::simpson, step,
-                                                1.0, stop_tolerance<double>(), true);
+  pixels[pixel] = integrate_multivariate_ray(grid, &blocks, ray, transfer, 1.0, wanted, true);
 }
 
 /// A ray whose function changes on its way, as where layers begin.
@@ -84,15 +79,6 @@ __global__ void change_function(MultivariateTransfer<double> first,
   integrator.set_transfer(second);
   integrator.add_stretch(span, {span.length, 2 * span.length}, PrimitiveSet{}, 0, 0);
   *result = integrator.result();
-}
-
-__global__ void render_linear_steps(MultichannelGrid grid, MultivariateTransfer<double> transfer,
-                                    CameraFrame<double> camera, GaussianRule rule, double step,
-                                    RayResult* pixels) {
-  const int pixel = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (pixel >= camera.width * camera.height) return;
-  pixels[pixel] = sample_linear_steps(grid, camera.ray(pixel % camera.width, pixel / camera.width),
-                                      transfer, rule, step, 1.0, stop_tolerance<double>(), true);
 }
 
 }  // namespace pellucid

@@ -12,16 +12,16 @@
 namespace pellucid::test_sample_ray {
 namespace {
 
-constexpr SamplingRule rules[] = {SamplingRule::rectangle, SamplingRule::taylor,
-                                  SamplingRule::midpoint,  SamplingRule::trapezoid,
-                                  SamplingRule::simpson,   SamplingRule::linear};
+constexpr SegmentRule rules[] = {SegmentRule::rectangle, SegmentRule::taylor,
+                                 SegmentRule::midpoint,  SegmentRule::trapezoid,
+                                 SegmentRule::simpson,   SegmentRule::linear};
 
 TEST(SampleRay, EveryRuleConvergesToTheSameIntegral) {
   const TestGrid<float> grid(9);
   const TestTable<double> table;
   const Ray<double> ray = oblique_ray(9);
   const RayResult exact = exact_ray(grid, ray, Precision::float64, false);
-  for (const SamplingRule rule : rules) {
+  for (const SegmentRule rule : rules) {
     const auto error = [&](double step) {
       const RayResult r =
           sample_ray<double>(grid.view(), ray, table.view(), rule, step, 1, 0, false);
@@ -39,7 +39,7 @@ TEST(SampleRay, TheLastStepEndsAtTheBox) {
   const double extinction = table.view().evaluate(static_cast<double>(0.45f)).extinction;
   for (const double step : {0.7, 1.0, 2.9, 3.0, 100.0}) {
     const RayResult r = sample_ray<double>(grid.view(), {{-1, 1, 1}, {1, 0, 0}}, table.view(),
-                                           SamplingRule::midpoint, step, 1, 0, false);
+                                           SegmentRule::midpoint, step, 1, 0, false);
     EXPECT_NEAR(r.optical_depth, 3 * extinction, 1e-14) << step;
     EXPECT_EQ(r.cells, static_cast<long>(std::ceil(3 / step))) << step;
   }
@@ -51,7 +51,7 @@ TEST(SampleRay, TheEyeInsideSeesWhatIsInFrontOfIt) {
   const TestTable<double> table;
   const double extinction = table.view().evaluate(static_cast<double>(0.45f)).extinction;
   const RayResult r = sample_ray<double>(grid.view(), {{1, 1, 1}, {1, 0, 0}}, table.view(),
-                                         SamplingRule::linear, 0.25, 1, 0, false);
+                                         SegmentRule::linear, 0.25, 1, 0, false);
   EXPECT_NEAR(r.optical_depth, 2 * extinction, 1e-14);
 }
 
@@ -59,7 +59,7 @@ TEST(SampleRay, NanIsVacuum) {
   TestGrid<double> grid(4);
   for (double& v : grid.data) v = std::numeric_limits<double>::quiet_NaN();
   const TestTable<double> table;
-  for (const SamplingRule rule : rules) {
+  for (const SegmentRule rule : rules) {
     const RayResult r =
         sample_ray<double>(grid.view(), oblique_ray(4), table.view(), rule, 0.1, 1, 0, true);
     EXPECT_EQ(r.opacity, 0);

@@ -110,20 +110,6 @@ TEST(Layers, ClipsAreShapes) {
   expect_part(error_of([&] { check_data(scene); }), "scene: clip 1: box from");
 }
 
-TEST(Layers, OtherMethodsWantOnePlainLayer) {
-  Scene scene = scene_of({VolumeContent{ramp(), haze()}});
-  scene.integration.method = Method::midpoint;
-  EXPECT_NO_THROW(check_method(scene));
-  scene.clips = {{ClipSphere{}}};
-  expect_part(error_of([&] { check_method(scene); }), "has no clips");
-  scene.clips.clear();
-  scene.layers.push_back(scene.layers[0]);
-  expect_part(error_of([&] { check_method(scene); }),
-              "is for scenes of one layer, but there are 2");
-  scene.integration.method = Method::exact;
-  EXPECT_NO_THROW(check_method(scene));
-}
-
 TEST(Layers, MovedVolumesShareTheirData) {
   const auto volume = ramp();
   Affine<double> map;

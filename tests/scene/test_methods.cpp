@@ -84,14 +84,30 @@ TEST(CheckMethod, OfChannels) {
 }
 
 TEST(CheckMethod, OfAMesh) {
-  expect_methods(scene_of(true, false), {Method::exact, Method::linear, Method::homogeneous,
-                                         Method::average, Method::partial});
+  expect_methods(scene_of(true, false),
+                 {Method::exact, Method::rectangle, Method::taylor, Method::midpoint,
+                  Method::trapezoid, Method::simpson, Method::linear, Method::preintegrated,
+                  Method::homogeneous, Method::average, Method::partial});
 }
 
 TEST(CheckMethod, OfAMeshWithGaussians) {
   expect_methods(scene_of(true, true),
-                 {Method::exact, Method::linear, Method::homogeneous, Method::average,
-                  Method::partial, Method::kniss, Method::gaussian});
+                 {Method::exact, Method::rectangle, Method::taylor, Method::midpoint,
+                  Method::trapezoid, Method::simpson, Method::linear, Method::homogeneous,
+                  Method::average, Method::partial, Method::kniss, Method::gaussian});
+}
+
+/// Each layer has to suit the method, but those that are not seen or projected.
+TEST(CheckMethod, OfSeveralLayers) {
+  Scene scene = scene_of(true, true);
+  scene.layers.push_back(scene_of(false, false).layers[0]);
+  expect_methods(
+      scene, {Method::exact, Method::rectangle, Method::taylor, Method::midpoint, Method::trapezoid,
+              Method::simpson, Method::linear, Method::kniss, Method::gaussian});
+  scene.layers[0].visible = false;
+  expect_methods(
+      scene, {Method::exact, Method::rectangle, Method::taylor, Method::midpoint, Method::trapezoid,
+              Method::simpson, Method::linear, Method::preintegrated});
 }
 
 }  // namespace

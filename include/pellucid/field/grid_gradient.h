@@ -94,11 +94,9 @@ PELLUCID_HD inline void gradients_along(const CornerGradients& corners,
   }
 }
 
-/// Computes the magnitude of the gradients at the corners, trilinear between, along that way.
-PELLUCID_HD inline CubicBernstein<double> magnitude_along(const CornerGradients& corners,
-                                                          const Mat3<double>& grid_from_world,
-                                                          const Vec3<double>& entry,
-                                                          const Vec3<double>& exit) noexcept {
+/// Returns the magnitudes of the gradients at the corners, in the world.
+PELLUCID_HD inline CellCorners<double> corner_magnitudes(
+    const CornerGradients& corners, const Mat3<double>& grid_from_world) noexcept {
   CellCorners<double> size;
   for (int n = 0; n < 8; ++n) {
     const Vec3<double> world{dot(grid_from_world.column[0], corners.at[n]),
@@ -106,7 +104,36 @@ PELLUCID_HD inline CubicBernstein<double> magnitude_along(const CornerGradients&
                              dot(grid_from_world.column[2], corners.at[n])};
     size.value[n] = length(world);
   }
-  return trilinear_cubic(size, entry, exit);
+  return size;
+}
+
+/// Computes the magnitude of the gradients at the corners, trilinear between, along that way.
+PELLUCID_HD inline CubicBernstein<double> magnitude_along(const CornerGradients& corners,
+                                                          const Mat3<double>& grid_from_world,
+                                                          const Vec3<double>& entry,
+                                                          const Vec3<double>& exit) noexcept {
+  return trilinear_cubic(corner_magnitudes(corners, grid_from_world), entry, exit);
+}
+
+/// Returns the gradient at a place in the cell, in the world.
+PELLUCID_HD inline Vec3<double> gradient_at(const CornerGradients& corners,
+                                            const Mat3<double>& grid_from_world,
+                                            const Vec3<double>& local) noexcept {
+  Vec3<double> in_grid, world;
+  for (int a = 0; a < 3; ++a) {
+    CellCorners<double> component;
+    for (int n = 0; n < 8; ++n) component.value[n] = corners.at[n][a];
+    in_grid[a] = trilinear_value(component, local);
+  }
+  for (int a = 0; a < 3; ++a) world[a] = dot(grid_from_world.column[a], in_grid);
+  return world;
+}
+
+/// Returns the magnitude at a place, trilinear between those at the corners.
+PELLUCID_HD inline double magnitude_at(const CornerGradients& corners,
+                                       const Mat3<double>& grid_from_world,
+                                       const Vec3<double>& local) noexcept {
+  return trilinear_value(corner_magnitudes(corners, grid_from_world), local);
 }
 
 }  // namespace pellucid

@@ -66,6 +66,10 @@ std::string_view method_name(Method method) noexcept;
 /// Returns the method of this name, or none.
 std::optional<Method> method_from_name(std::string_view name) noexcept;
 
+/// Returns whether a method takes the tetrahedra of meshes for its segments, where a scene shows
+/// nothing else; else it goes in steps.
+bool takes_cells(Method method) noexcept;
+
 /// Limits of Integration::step. Below the smaller one a frame takes days, and the samples of a ray
 /// through a large volume cannot be told apart.
 inline constexpr double smallest_step = 1e-4;
@@ -83,7 +87,9 @@ inline constexpr double default_tolerance = 1.0 / 512;
 struct Integration {
   Method method = Method::exact;
   Precision precision = Precision::automatic;
-  double step = 0.5;  ///< of the marching methods, in voxels (Volume::voxel_size)
+  /// Of the sampling methods, in voxels of the finest layer: Volume::voxel_size(), of a mesh
+  /// voxel_of() (scene/layer.h).
+  double step = 0.5;
   /// Largest error of a pixel of the exact method, in each channel of premultiplied linear RGBA.
   /// render() throws Error if it is outside of the limits above.
   double tolerance = default_tolerance;

@@ -94,6 +94,8 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads, 
   RayTolerance wanted;
   wanted.tolerance = std::max(integration.tolerance - reserved - storage_error(largest_color),
                               0.25 * integration.tolerance);
+  // What is left out of a sampled picture must not be seen beside its own errors.
+  if (integration.method != Method::exact) wanted.tolerance = smallest_tolerance;
   tolerance = wanted.tolerance;
   wanted.grade = integration.grade;
   wanted.precision = integration.precision;

@@ -9,11 +9,8 @@
 #include "frame/rays_apart.h"
 #include "gaussian_packets.h"
 #include "packet_setup.h"
-#include "pellucid/render/sample_ray.h"
 #include "pellucid/scene/multivariate_blocks_storage.h"
 #include "ray_tracer.h"
-#include "sample/multivariate_sampler.h"
-#include "sample/sampling_rule.h"
 #include "threads.h"
 
 namespace pellucid {
@@ -28,28 +25,18 @@ double negligible_extinction(const TracerTask& task) {
 class MultivariateTracer : public RayTracer {
  public:
   explicit MultivariateTracer(const TracerTask& task)
-      : integration_(task.integration),
-        channels_(*std::get<ChannelsContent>(task.layer.content).channels),
+      : channels_(*std::get<ChannelsContent>(task.layer.content).channels),
         transfer_function_(*std::get<ChannelsContent>(task.layer.content).transfer_function),
         wanted_(task.wanted),
         depth_(task.options.depth),
         grid_(multichannel_grid(channels_)),
-        transfer_(transfer_function_.view()),
-        step_(integration_.step * channels_.grid().voxel_size()) {
-    if (integration_.method == Method::midpoint && !depth_ &&
-        integration_.precision != Precision::float64) {
-      sampler_ = MultivariatePacketSampler::make(
-          channels_, transfer_function_, step_,
-          stop_tolerance<float>() / std::max(transfer_function_.largest_color(), 1.0),
-          task.options.instruction_set, parallel_for(task.threads));
-    }
-    if (integration_.method != Method::exact) return;
+        transfer_(transfer_function_.view()) {
     storage_ = MultivariateBlocksStorage(channels_, transfer_function_, negligible_extinction(task),
                                          parallel_for(task.threads));
     blocks_ = storage_.view();
     wanted_.tolerance *= 1 - ray_left_out_share;
     const InstructionSet set = packet_instruction_set(task.options.instruction_set);
-    if (set == InstructionSet::scalar || integration_.precision != Precision::automatic) return;
+    if (set == InstructionSet::scalar || task.integration.precision != Precision::automatic) return;
     cells_ = CellPackets::make(channels_, transfer_function_, *blocks_, grid_, wanted_, set);
     if (!cells_ || task.options.gaussian_march.value_or(faster_march()) == GaussianMarch::steps) {
       steps_ = GaussianPackets::make(channels_, transfer_function_, *blocks_, grid_, wanted_,
@@ -61,23 +48,12 @@ class MultivariateTracer : public RayTracer {
     }
   }
 
-  /// Whether there is code for the method `exact`.
-  bool is_able() const { return integration_.method != Method::exact || steps_ || cells_; }
+  bool has_packets() const { return steps_ || cells_; }
 
-  bool keeps_to_ranges() const override { return integration_.method == Method::exact; }
+  bool keeps_to_ranges() const override { return true; }
   std::vector<RayResult> trace(const std::vector<RayPart>& parts,
                                const TraceOptions& options) const override {
-    const std::vector<RayPart> in_grid = parts_in_grid(channels_.grid(), parts);
-    if (integration_.method == Method::exact) return trace_in_lanes(in_grid, options);
-    if (sampler_) return sampler_->trace(in_grid);
-    std::vector<RayResult> results;
-    results.reserve(parts.size());
-    for (const RayPart& part : in_grid) {
-      if (options.stop.stop_requested()) break;
-      results.push_back(sample(part.ray));
-    }
-    results.resize(parts.size());
-    return results;
+    return trace_in_lanes(parts_in_grid(channels_.grid(), parts), options);
   }
 
   std::optional<Surroundings> surroundings() const override {
@@ -158,39 +134,24 @@ class MultivariateTracer : public RayTracer {
     }
   }
 
-  RayResult sample(const Ray<double>& ray) const {
-    const double largest_color = transfer_function_.largest_color();
-    constexpr double stop = stop_tolerance<double>();
-    if (integration_.method == Method::kniss || integration_.method == Method::gaussian) {
-      const auto rule =
-          integration_.method == Method::kniss ? GaussianRule::kniss : GaussianRule::closed_form;
-      return sample_linear_steps(grid_, ray, transfer_, rule, step_, largest_color, stop, depth_);
-    }
-    return sample_multivariate_ray(grid_, ray, transfer_, sampling_rule(integration_.method), step_,
-                                   largest_color, stop, depth_);
-  }
-
-  const Integration integration_;
   const Channels& channels_;
   const MultivariateTransferFunction& transfer_function_;
   RayTolerance wanted_;
   bool depth_;
   MultichannelGrid grid_;
   MultivariateTransfer<double> transfer_;
-  double step_;  ///< of the sampling methods, world length
   MultivariateBlocksStorage storage_;
-  std::optional<MultivariateBlocks> blocks_;      ///< of the exact method
+  std::optional<MultivariateBlocks> blocks_;
   std::unique_ptr<const CellPackets> cells_;      ///< null: what it does goes the general path
   std::unique_ptr<const GaussianPackets> steps_;  ///< null: all rays go cell by cell
   std::optional<RaysApart> rays_apart_;           ///< none: pixels are not interpolated
-  std::unique_ptr<const MultivariatePacketSampler> sampler_;  ///< null: another method, or that
 };
 
 }  // namespace
 
 std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task) {
   auto tracer = std::make_unique<MultivariateTracer>(task);
-  if (!tracer->is_able()) return nullptr;
+  if (!tracer->has_packets()) return nullptr;
   return tracer;
 }
 

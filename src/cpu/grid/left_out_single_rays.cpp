@@ -12,7 +12,7 @@ bool has_single_rays() noexcept {
 
 std::vector<RayResult> trace_single_rays(const SingleRays&, const std::vector<RayPart>&,
                                          const RayTolerance&, const std::stop_token&) {
-  throw left_out("what samples rays");
+  throw left_out("what follows rays one by one");
 }
 
 }  // namespace pellucid

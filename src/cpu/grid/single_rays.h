@@ -6,9 +6,7 @@
 
 #include "pellucid/render/ray_result.h"
 #include "pellucid/render/transfer_tables.h"
-#include "pellucid/scene/scene.h"
 #include "pellucid/scene/volume.h"
-#include "pellucid/transfer/preintegrated.h"
 #include "pellucid/traverse/block_classes.h"
 #include "ray_tracer.h"
 
@@ -16,14 +14,10 @@ namespace pellucid {
 
 /// What single rays go through, and how.
 struct SingleRays {
-  const Integration& integration;
   const Volume& volume;
   const TransferTables& transfer;
-  const ClassifiedBlocks* blocks;           ///< null: the method has no use for them
-  const PreintegratedTable* preintegrated;  ///< null: another method
-  double largest_color;                     ///< of the transfer function
-  double step;                              ///< of the sampling methods, world length
-  bool depth;                               ///< whether the depth of half opacity is asked for
+  const ClassifiedBlocks* blocks;  ///< null: none is classified
+  bool depth;                      ///< whether the depth of half opacity is asked for
 };
 
 /// Returns whether this build follows single rays. Without, a layer that does not suit packets

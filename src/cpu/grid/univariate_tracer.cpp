@@ -7,24 +7,15 @@
 #include "packet_setup.h"
 #include "packet_surfaces.h"
 #include "packet_tracer.h"
-#include "pellucid/render/sample_ray.h"
 #include "pellucid/scene/block_classes_storage.h"
 #include "pellucid/scene/transfer_tables_storage.h"
 #include "ray_tracer.h"
 #include "rays_in_planes.h"
-#include "sample/packet_sampler.h"
-#include "sample/preintegrated_storage.h"
 #include "single_rays.h"
 #include "threads.h"
 
 namespace pellucid {
 namespace {
-
-/// Whether the method has a sampler in packets.
-bool goes_in_packets(const Integration& integration) {
-  return (integration.method == Method::midpoint || integration.method == Method::preintegrated) &&
-         integration.precision != Precision::float64;
-}
 
 class UnivariateTracer : public RayTracer {
  public:
@@ -33,11 +24,10 @@ class UnivariateTracer : public RayTracer {
   /// Returns whether its rays go in packets: those of lit layers have to.
   bool has_packets() const { return packets_ != nullptr; }
   std::optional<Surroundings> surroundings() const override;
-  bool keeps_to_ranges() const override { return integration_.method == Method::exact; }
+  bool keeps_to_ranges() const override { return true; }
   std::vector<RayResult> trace(const std::vector<RayPart>& parts,
                                const TraceOptions& options) const override {
     const std::vector<RayPart> in_grid = parts_in_grid(volume_, parts);
-    if (sampler_) return sampler_->trace(in_grid);
     if (!packets_) return trace_one_by_one(in_grid, options);
     std::vector<RayResult> results =
         packets_->trace(in_grid, options.share * options.share_of_rays, depth_);
@@ -49,29 +39,23 @@ class UnivariateTracer : public RayTracer {
   std::vector<RayResult> trace_one_by_one(const std::vector<RayPart>& in_grid,
                                           const TraceOptions& options) const;
 
-  const Integration integration_;
   const Volume& volume_;
   const TransferFunction& transfer_function_;
   RayTolerance wanted_;
-  bool depth_;   ///< whether the depth of half opacity is asked for
-  double step_;  ///< of the sampling methods, world length
+  bool depth_;  ///< whether the depth of half opacity is asked for
   std::optional<TransferFunction> with_surfaces_;  ///< the function, if there are isosurfaces
   TransferTablesStorage transfer_;
   BlockClassesStorage block_classes_;
-  std::optional<ClassifiedBlocks> blocks_;       ///< none: the method has no use for them
+  std::optional<ClassifiedBlocks> blocks_;       ///< none: the layer is not this tracer's
   std::unique_ptr<const GridLight> light_;       ///< null: unlit
-  std::unique_ptr<const PacketTracer> packets_;  ///< null: rays go one by one, or are sampled
-  std::unique_ptr<const PreintegratedStorage> preintegrated_;  ///< null: another method
-  std::unique_ptr<const PacketSamplerTracer> sampler_;         ///< null: rays go one by one
+  std::unique_ptr<const PacketTracer> packets_;  ///< null: rays go one by one
 };
 
 UnivariateTracer::UnivariateTracer(const TracerTask& task)
-    : integration_(task.integration),
-      volume_(*std::get<VolumeContent>(task.layer.content).volume),
+    : volume_(*std::get<VolumeContent>(task.layer.content).volume),
       transfer_function_(*std::get<VolumeContent>(task.layer.content).transfer_function),
       wanted_(task.wanted),
       depth_(task.options.depth),
-      step_(integration_.step * volume_.voxel_size()),
       with_surfaces_(has_plain_isosurfaces(task.layer) ? with_points_at_isosurfaces(task.layer)
                                                        : std::nullopt),
       transfer_(with_surfaces_ ? *with_surfaces_ : transfer_function_) {
@@ -81,16 +65,9 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
     if (!light_) return;
   }
   const ParallelFor parallel = parallel_for(task.threads);
-  if (integration_.method == Method::preintegrated) {
-    const VolumeStatistics& data = volume_.statistics();
-    preintegrated_ = std::make_unique<PreintegratedStorage>(transfer_.tables().wide, data.minimum,
-                                                            data.maximum, step_, parallel);
-  }
-  const bool samples = goes_in_packets(integration_) && !depth_;
-  if (integration_.method != Method::exact && !samples) return;
   const BlockRecords& records = volume_.block_records(parallel);
   std::function<StepLimits(double)> limits;
-  if (!samples && wanted_.grade != Grade::proved && !light_) {
+  if (wanted_.grade != Grade::proved && !light_) {
     limits = [this](double share_throughout) {
       return PacketTracer::step_limits(volume_, transfer_.tables(), wanted_, share_throughout);
     };
@@ -98,17 +75,9 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
   block_classes_ =
       BlockClassesStorage(records, transfer_.tables(), wanted_.largest_color, parallel, limits);
   blocks_ = ClassifiedBlocks{records, block_classes_.view()};
-  if (samples) {
-    sampler_ = PacketSamplerTracer::make(
-        volume_, blocks_->classes, transfer_.tables().single,
-        preintegrated_ ? &preintegrated_->view() : nullptr, step_,
-        stop_tolerance<float>() / std::max(transfer_function_.largest_color(), 1.0),
-        task.options.instruction_set);
-  } else {
-    packets_ =
-        PacketTracer::make(volume_, *blocks_, light_ ? SmoothBlocks{} : block_classes_.smooth(),
-                           transfer_.tables(), wanted_, task.options.instruction_set, light_.get());
-  }
+  packets_ =
+      PacketTracer::make(volume_, *blocks_, light_ ? SmoothBlocks{} : block_classes_.smooth(),
+                         transfer_.tables(), wanted_, task.options.instruction_set, light_.get());
 }
 
 std::optional<RayTracer::Surroundings> UnivariateTracer::surroundings() const {
@@ -123,19 +92,15 @@ std::vector<RayResult> UnivariateTracer::trace_one_by_one(const std::vector<RayP
                                                           const TraceOptions& options) const {
   RayTolerance wanted = wanted_;
   wanted.tolerance *= options.share;
-  return trace_single_rays(
-      {integration_, volume_, transfer_.tables(), blocks_ ? &*blocks_ : nullptr,
-       preintegrated_ ? &preintegrated_->view() : nullptr, transfer_function_.largest_color(),
-       step_, depth_},
-      in_grid, wanted, options.stop);
+  return trace_single_rays({volume_, transfer_.tables(), blocks_ ? &*blocks_ : nullptr, depth_},
+                           in_grid, wanted, options.stop);
 }
 
 }  // namespace
 
 std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task) {
   auto tracer = std::make_unique<UnivariateTracer>(task);
-  const bool needs_packets =
-      is_lit(task.layer) || (task.integration.method == Method::exact && !has_single_rays());
+  const bool needs_packets = is_lit(task.layer) || !has_single_rays();
   if (needs_packets && !tracer->has_packets()) return nullptr;
   return tracer;
 }

@@ -24,13 +24,25 @@ CornerGradients GridGradient::smooth_corners(const int (&cell)[3]) const {
   });
 }
 
+CornerGradients GridGradient::corners(const int (&cell)[3]) const {
+  return kind_ == GradientKind::smooth
+             ? smooth_corners(cell)
+             : volume_.visit([&](const auto& grid) { return field_gradients(grid, cell); });
+}
+
 void GridGradient::along(const StructuredWalk<double>::Step& step,
                          CubicBernstein<double> (&gradient)[3]) const {
-  const CornerGradients corners =
-      kind_ == GradientKind::smooth
-          ? smooth_corners(step.cell)
-          : volume_.visit([&](const auto& grid) { return field_gradients(grid, step.cell); });
-  gradients_along(corners, volume_.grid_from_world().matrix, step.entry, step.exit, gradient);
+  gradients_along(corners(step.cell), volume_.grid_from_world().matrix, step.entry, step.exit,
+                  gradient);
+}
+
+Vec3<double> GridGradient::at(const GridPlace<double>& place) const {
+  return gradient_at(corners(place.cell), volume_.grid_from_world().matrix, place.local);
+}
+
+double GridGradient::magnitude_at(const GridPlace<double>& place) const {
+  return pellucid::magnitude_at(smooth_corners(place.cell), volume_.grid_from_world().matrix,
+                                place.local);
 }
 
 double GridGradient::doubt(const StructuredWalk<double>::Step& step,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pellucid/field/grid_gradient.h"
+#include "pellucid/field/sample.h"
 #include "pellucid/scene/light.h"
 #include "pellucid/scene/volume.h"
 #include "pellucid/traverse/structured_walk.h"
@@ -29,9 +30,13 @@ class GridGradient {
                    const PlaneDoubt& planes) const;
   /// Computes the magnitude of the `smooth` gradient at the data values, trilinear between.
   CubicBernstein<double> magnitude_along(const StructuredWalk<double>::Step& step) const;
+  /// Return both at a place; its cell has no NaN corner.
+  Vec3<double> at(const GridPlace<double>& place) const;
+  double magnitude_at(const GridPlace<double>& place) const;
 
  private:
   CornerGradients smooth_corners(const int (&cell)[3]) const;
+  CornerGradients corners(const int (&cell)[3]) const;
 
   const Volume& volume_;
   GradientKind kind_;

@@ -40,6 +40,7 @@ class LayerLook {
     for (double& b : argument.b) b += factor_shift_;
     return argument;
   }
+  double factor_argument(double datum) const noexcept { return datum + factor_shift_; }
   /// Returns whether its panels need light or a factor.
   bool is_lit() const noexcept { return reflection_ || factors_; }
   /// Returns whether its medium absorbs anywhere.

@@ -13,6 +13,7 @@ namespace {
 std::unique_ptr<const RayTracer> make_fast_tracer(const TracerTask& task,
                                                   const LayerSetting& setting) {
   const LayerContent& content = task.layer.content;
+  if (setting.integration.method != Method::exact) return make_packet_sampler(task);
   if (auto surfaces = make_surface_tracer(task)) return surfaces;
   if (is_lit(task.layer) && !std::holds_alternative<VolumeContent>(content)) return nullptr;
   if (extinction_factor_of(task.layer) != nullptr) return nullptr;

@@ -52,6 +52,8 @@ class LayerStream {
   virtual bool next(LayerStretch& stretch) = 0;
 };
 
+class LayerPoints;
+
 /// A layer as rays need it: its functions and, for each thread, a stream.
 class LayerSource {
  public:
@@ -66,6 +68,9 @@ class LayerSource {
   const std::vector<MultivariateTransfer<double>>& functions() const noexcept { return functions_; }
   /// `by_cells`: stretches may tell cells of cells() alone.
   virtual std::unique_ptr<LayerStream> stream(bool by_cells) const = 0;
+  /// Returns its points, for methods that sample: those of its stretches, unless the data tell them
+  /// in less time.
+  virtual std::unique_ptr<LayerPoints> sampled_points() const;
   /// Returns the uniform grid whose cells its stretches can tell; null: none.
   virtual const Volume* cells() const noexcept { return nullptr; }
   const LayerLook& look() const noexcept { return look_; }

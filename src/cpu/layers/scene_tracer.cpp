@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "layered_packets.h"
 #include "pellucid/geometry/box.h"
 #include "pellucid/traverse/structured_walk.h"
+#include "sample/sampled_path.h"
 
 namespace pellucid {
 namespace {
@@ -124,9 +126,11 @@ class SceneTracer : public RayTracer {
   std::vector<RayResult> trace(const std::vector<RayPart>& parts,
                                const TraceOptions& options) const override {
     std::optional<GeneralPath> general;
-    if (only_ != nullptr && (only_->keeps_to_ranges() || std::ranges::all_of(parts, is_whole))) {
+    const bool fits_only =
+        only_ != nullptr && (only_->keeps_to_ranges() || std::ranges::all_of(parts, is_whole));
+    if (is_sampled()) return fits_only ? only_->trace(parts, options) : sample(parts, options);
+    if (fits_only) {
       std::vector<RayResult> results = only_->trace(parts, options);
-      if (is_sampled()) return results;
       for (std::size_t i = 0; i < parts.size() && !options.stop.stop_requested(); ++i) {
         if (std::isinf(results[i].error)) {
           results[i] = integrate(general, parts[i], wanted_.tolerance * options.share);
@@ -160,7 +164,22 @@ class SceneTracer : public RayTracer {
 
  private:
   bool is_sampled() const {
-    return layers_[0].setup->setting().integration.method != Method::exact;
+    return !layers_.empty() && layers_[0].setup->setting().integration.method != Method::exact;
+  }
+  std::vector<RayResult> sample(const std::vector<RayPart>& parts,
+                                const TraceOptions& options) const {
+    std::call_once(plan_made_, [&] {
+      plan_.emplace(layers_, layers_[0].setup->setting().integration, largest_color(), depth_);
+    });
+    SampledPath path(layers_, lights_, *plan_, largest_color());
+    std::vector<RayResult> results;
+    results.reserve(parts.size());
+    for (const RayPart& part : parts) {
+      if (options.stop.stop_requested()) break;
+      results.push_back(path.sample(part));
+    }
+    results.resize(parts.size());
+    return results;
   }
   double largest_color() const { return std::max(wanted_.largest_color, 1.0); }
 
@@ -386,6 +405,8 @@ class SceneTracer : public RayTracer {
   const RayTracer* const only_;  ///< of the only layer, which has no clips; null otherwise
   bool surfaces_ = false;        ///< whether any layer has some
   std::unique_ptr<const LayeredPackets> packets_;  ///< for the general path's parts; may be null
+  mutable std::once_flag plan_made_;
+  mutable std::optional<SamplingPlan> plan_;  ///< of a method that samples; made when it is needed
 };
 
 }  // namespace

@@ -15,7 +15,8 @@ namespace pellucid {
 /// by side cost what each costs by itself. The parts are composited front to back, and share the
 /// tolerance.
 ///
-/// With a method other than `exact` there is one layer, without clips, and its sampler follows it.
+/// With a method other than `exact`, the only layer's sampler in packets follows whole rays, where
+/// it has one; everything else is sampled ray by ray (sample/sampled_path.h).
 std::unique_ptr<const RayTracer> make_scene_tracer(std::vector<ClippedLayer> layers,
                                                    const std::vector<Light>& lights,
                                                    const RayTolerance& wanted, bool depth);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "grid_gradient.h"
+#include "grid_points.h"
 #include "grid_stream.h"
 #include "label_axes.h"
 #include "packet_setup.h"
@@ -64,6 +65,11 @@ class GridGradients {
     }
     if (magnitude_) stretch.magnitude = magnitude_->magnitude_along(step);
   }
+  /// Computes what is needed at a place.
+  void find(LayerPoint& point) const {
+    if (gradient_) point.gradient = gradient_->at(point.place);
+    if (magnitude_) point.factor_argument = magnitude_->magnitude_at(point.place);
+  }
   /// Returns whether the gradient of a step may be that of another cell.
   bool is_doubtful(const StructuredWalk<double>::Step& step, const GridAxis<double> (&axis)[3],
                    const PlaneDoubt& planes) const {
@@ -102,6 +108,7 @@ class VolumeSource : public LayerSource {
   }
 
   std::unique_ptr<LayerStream> stream(bool by_cells) const override;
+  std::unique_ptr<LayerPoints> sampled_points() const override;
   const Volume* cells() const noexcept override {
     return in_cells_ ? content_.volume.get() : nullptr;
   }
@@ -281,6 +288,35 @@ std::unique_ptr<LayerStream> VolumeSource::stream(bool by_cells) const {
                                         by_cells && cells() != nullptr);
 }
 
+/// Points of a volume, of whose functions a mask may choose.
+class VolumePoints : public GridPoints {
+ public:
+  VolumePoints(const VolumeSource& source, const Volume& volume, const BlockRecords& records,
+               const BlockClass* classes)
+      : GridPoints(volume, source.grid().axis, records, classes), source_(source) {}
+
+  void find(double t, LayerPoint& point) override {
+    point.place = place(t);
+    point.value[0] = source_.grid().visit_channel(
+        0, [&](const auto& grid) { return sample_value<double>(grid, point.place); });
+    point.function = std::isnan(point.value[0]) ? -1 : 0;
+    if (point.function == 0 && source_.labels() != nullptr) {
+      const Vec3<double> here = position(t);
+      int cell[3];
+      for (int a = 0; a < 3; ++a) cell[a] = find_cell(source_.labels()->axis()[a], here[a]);
+      point.function = source_.function_at(cell);
+    }
+  }
+  void find_gradients(LayerPoint& point) const override { source_.gradients().find(point); }
+
+ private:
+  const VolumeSource& source_;
+};
+
+std::unique_ptr<LayerPoints> VolumeSource::sampled_points() const {
+  return std::make_unique<VolumePoints>(*this, *content_.volume, records_, classes_.data());
+}
+
 /// Several channels with a function of all of them.
 class ChannelsSource : public LayerSource {
  public:
@@ -303,6 +339,7 @@ class ChannelsSource : public LayerSource {
   }
 
   std::unique_ptr<LayerStream> stream(bool by_cells) const override;
+  std::unique_ptr<LayerPoints> sampled_points() const override;
 
   const MultichannelGrid& grid() const { return grid_; }
   const MultivariateBlocks& blocks() const { return blocks_; }
@@ -360,6 +397,38 @@ class ChannelsStream : public GridStream {
 
 std::unique_ptr<LayerStream> ChannelsSource::stream(bool /*by_cells*/) const {
   return std::make_unique<ChannelsStream>(*this, channels_.grid());
+}
+
+class ChannelsPoints : public GridPoints {
+ public:
+  ChannelsPoints(const ChannelsSource& source, const Volume& volume)
+      : GridPoints(volume, source.grid().axis, source.blocks().records, source.classes()),
+        source_(source) {}
+
+  void find(double t, LayerPoint& point) override {
+    point.place = place(t);
+    const MultichannelGrid& grid = source_.grid();
+    double sum = 0;
+    for (int c = 0; c < grid.channels; ++c) {
+      point.value[c] = grid.visit_channel(
+          c, [&](const auto& of) { return sample_value<double>(of, point.place); });
+      sum += point.value[c];
+    }
+    point.function = std::isnan(sum) ? -1 : 0;
+  }
+  void find_gradients(LayerPoint& point) const override {
+    source_.gradients().find(point);
+    if (const ChannelTransferFunction* const factor = source_.look().value_factor()) {
+      point.factor_argument = source_.look().factor_argument(point.value[factor->channel]);
+    }
+  }
+
+ private:
+  const ChannelsSource& source_;
+};
+
+std::unique_ptr<LayerPoints> ChannelsSource::sampled_points() const {
+  return std::make_unique<ChannelsPoints>(*this, channels_.grid());
 }
 
 }  // namespace

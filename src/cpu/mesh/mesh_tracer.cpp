@@ -262,7 +262,6 @@ class MultivariateMeshTracer : public MeshTracer {
 }  // namespace
 
 std::unique_ptr<const RayTracer> make_mesh_tracer(const TracerTask& task) {
-  if (task.integration.method != Method::exact) return make_mesh_sampler(task);
   if (content_of(task).multivariate() == nullptr) {
     return std::make_unique<UnivariateMeshTracer>(task);
   }

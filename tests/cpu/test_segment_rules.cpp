@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The models of a cell against quadrature of what each makes of it.
+// The rules that take materials, against quadrature of what each makes of a cell of linear data.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "pellucid/scene/multivariate_transfer_function.h"
-#include "pellucid/segment/cell_model.h"
+#include "pellucid/segment/segment_rule.h"
 #include "segment_quadrature.h"
 #include "src/cpu/sample/psi_table_storage.h"
 
-namespace pellucid::test_cell_models {
+namespace pellucid::test_segment_rules {
 namespace {
 
 /// Extinction and red as a model has them at both ends of the segment.
@@ -22,13 +22,20 @@ struct Ends {
 };
 
 template <class MaterialAt>
-Ends ends_of(CellModel model, const MaterialAt& at, double front, double back) {
+Ends ends_of(SegmentRule rule, const MaterialAt& at, double front, double back) {
   const Material<double> f = at(front), b = at(back), m = at(0.5 * (front + back));
-  if (model == CellModel::homogeneous) return {m, m};
+  if (rule == SegmentRule::midpoint) return {m, m};
   const Material<double> mean{0.5 * (f.extinction + b.extinction),
                               {0.5 * (f.color.r + b.color.r), 0, 0}};
-  if (model == CellModel::average) return {mean, mean};
+  if (rule == SegmentRule::trapezoid) return {mean, mean};
   return {f, b};
+}
+
+Material<double> material_of(const PiecewiseLinear<double>& transfer, double value) {
+  return transfer.evaluate(value);
+}
+Material<double> material_of(const MultivariateTransfer<double>& transfer, double value) {
+  return transfer.evaluate(&value);
 }
 
 /// Random segments of data in [-0.2, 1.2]; at(v) is the function that the kernel sees as
@@ -41,25 +48,27 @@ void compare(const Transfer& transfer, const MaterialAt& at) {
     const double front = 1.4 * unit(random) - 0.2;
     const double back = n % 7 == 0 ? front : 1.4 * unit(random) - 0.2;
     const double length = std::pow(10, 3 * unit(random) - 2);
-    for (const CellModel model :
-         {CellModel::homogeneous, CellModel::average, CellModel::linear, CellModel::partial}) {
+    const double middle = 0.5 * (front + back);
+    for (const SegmentRule rule : {SegmentRule::midpoint, SegmentRule::trapezoid,
+                                   SegmentRule::linear, SegmentRule::partial}) {
       const SegmentResult<double> found =
-          cell_segment(model, psi_table(), transfer, 1, &front, &back, length);
-      const Ends ends = ends_of(model, at, front, back);
+          material_segment(rule, psi_table(), material_of(transfer, front),
+                           material_of(transfer, middle), material_of(transfer, back), length);
+      const Ends ends = ends_of(rule, at, front, back);
       const test::WideSegment truth = test::wide_segment(ends.front, ends.back, length);
-      const std::string what = "model " + std::to_string(static_cast<int>(model)) + " from " +
+      const std::string what = "rule " + std::to_string(static_cast<int>(rule)) + " from " +
                                std::to_string(front) + " to " + std::to_string(back) + " over " +
                                std::to_string(length);
       EXPECT_NEAR(found.opacity, static_cast<double>(truth.opacity), 1e-14) << what;
       EXPECT_NEAR(found.transparency, static_cast<double>(1 - truth.opacity), 1e-14) << what;
       EXPECT_NEAR(found.radiance.r, static_cast<double>(truth.radiance),
-                  model == CellModel::partial ? 1e-3 : 1e-14)
+                  rule == SegmentRule::partial ? 1e-3 : 1e-14)
           << what;
     }
   }
 }
 
-TEST(CellModel, IntegratesWhatItMakesOfATable) {
+TEST(SegmentRule, IntegratesWhatItMakesOfATable) {
   const std::vector<double> value{0, 0.3, 0.4, 1};
   const std::vector<Material<double>> material{
       {0.2, {0.1, 0, 0}}, {9, {0.8, 0, 0}}, {1, {0.3, 0, 0}}, {3, {1, 0, 0}}};
@@ -77,7 +86,7 @@ TEST(CellModel, IntegratesWhatItMakesOfATable) {
   compare(transfer, at);
 }
 
-TEST(CellModel, IntegratesWhatItMakesOfGaussians) {
+TEST(SegmentRule, IntegratesWhatItMakesOfGaussians) {
   const MultivariateTransferFunction function(
       1, {{{0}, {0.3}, {{6}}, 5, {1, 0, 0}}, {{0}, {0.7}, {{3}}, 2, {0.2, 0, 0}}});
   const auto at = [](double v) -> Material<double> {
@@ -89,4 +98,4 @@ TEST(CellModel, IntegratesWhatItMakesOfGaussians) {
 }
 
 }  // namespace
-}  // namespace pellucid::test_cell_models
+}  // namespace pellucid::test_segment_rules

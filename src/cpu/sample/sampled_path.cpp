@@ -1,0 +1,439 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sampled_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "layers/clip_intervals.h"
+#include "pellucid/render/sample_ray.h"
+#include "psi_table_storage.h"
+
+namespace pellucid {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Beyond this depth, and at infinite ones, nothing is seen.
+constexpr double opaque_depth = 700;
+
+SegmentRule rule_of(Method method) {
+  switch (method) {
+    case Method::rectangle:
+      return SegmentRule::rectangle;
+    case Method::taylor:
+      return SegmentRule::taylor;
+    case Method::midpoint:
+    case Method::homogeneous:
+      return SegmentRule::midpoint;
+    case Method::trapezoid:
+    case Method::average:
+      return SegmentRule::trapezoid;
+    case Method::simpson:
+      return SegmentRule::simpson;
+    case Method::partial:
+      return SegmentRule::partial;
+    case Method::preintegrated:
+      return SegmentRule::preintegrated;
+    case Method::kniss:
+      return SegmentRule::kniss;
+    case Method::gaussian:
+      return SegmentRule::gaussian;
+    case Method::linear:
+    case Method::exact:
+      break;
+  }
+  return SegmentRule::linear;
+}
+
+bool is_mesh(const Layer& layer) {
+  return std::holds_alternative<MeshContent>(layer.content);
+}
+
+double voxel_of_steps(const Layer& layer) {
+  const Volume* const volume = grid_of(layer);
+  return volume != nullptr ? volume->voxel_size() : voxel_of(layer);
+}
+
+/// Least and largest value of a layer's first channel.
+Interval<double> range_of(const Layer& layer) {
+  if (const auto* const mesh = std::get_if<MeshContent>(&layer.content)) {
+    const auto& data = mesh->mesh->statistics(0);
+    return {data.minimum, data.maximum};
+  }
+  const VolumeStatistics& data = grid_of(layer)->statistics();
+  return {data.minimum, data.maximum};
+}
+
+/// A segment's depth and the color of which its radiance is made.
+struct DepthAndColor {
+  double depth = 0;
+  Rgb<double> color{};
+};
+DepthAndColor depth_and_color(const SegmentResult<double>& segment) {
+  // Quotients of what is smaller overflow.
+  if (!(segment.opacity >= smallest_normal<double>)) return {};
+  return {std::min(segment.optical_depth, opaque_depth), (1 / segment.opacity) * segment.radiance};
+}
+
+}  // namespace
+
+SamplingPlan::SamplingPlan(const std::vector<ClippedLayer>& layers, const Integration& integration,
+                           double largest_color, bool depth)
+    : rule_(rule_of(integration.method)),
+      by_cells_(
+          takes_cells(integration.method) &&
+          std::ranges::all_of(
+              layers, [](const ClippedLayer& layer) { return is_mesh(layer.setup->layer()); })),
+      step_(infinity),
+      stop_(stop_tolerance<double>() / std::max(largest_color, 1.0)),
+      depth_(depth) {
+  for (const ClippedLayer& layer : layers) {
+    step_ = std::min(step_, integration.step * voxel_of_steps(layer.setup->layer()));
+  }
+  if (rule_ == SegmentRule::partial) psi_ = psi_table();
+  if (rule_ != SegmentRule::preintegrated) return;
+  for (const ClippedLayer& layer : layers) {
+    const Interval<double> range = range_of(layer.setup->layer());
+    auto& of_layer = tables_.emplace_back();
+    for (const MultivariateTransfer<double>& function : layer.setup->source().functions()) {
+      of_layer.push_back(std::make_unique<const PreintegratedStorage>(
+          function.table[0].table, range.begin, range.end, step_, ParallelFor{}));
+    }
+  }
+}
+
+/// A layer's points on a ray, in the ranges that its clips keep.
+class SampledPath::LayerOnRay {
+ public:
+  explicit LayerOnRay(const ClippedLayer& layer)
+      : source(layer.setup->source()), points(source.sampled_points()), layer_(layer) {}
+
+  /// Begins a ray; adds the places where the layer begins and ends.
+  void start(const RayPart& part, std::vector<double>& ends) {
+    Interval<double> inside = points->start(part.ray);
+    inside.begin = std::max(inside.begin, part.range.begin);
+    inside.end = std::min(inside.end, part.range.end);
+    ranges_ = ClipIntervals(inside, layer_.clips, part.ray).kept;
+    range_ = 0;
+    if (ranges_.empty()) return;
+    for (const Interval<double>& range : ranges_) {
+      ends.push_back(range.begin);
+      ends.push_back(range.end);
+    }
+    enter();
+  }
+  /// Returns the first position from t on at which it may absorb; infinite: none.
+  double next_from(double t) {
+    for (; range_ < ranges_.size(); ++range_) {
+      if (t < ranges_[range_].end) {
+        if (entered_ != range_) enter();
+        const double next = points->next_from(std::max(t, ranges_[range_].begin));
+        if (next < ranges_[range_].end) return next;
+      }
+    }
+    return infinity;
+  }
+  /// Returns whether it is there between the positions, at which its ranges are cut.
+  bool holds(double begin, double end) {
+    const double middle = 0.5 * (begin + end);
+    while (range_ < ranges_.size() && !(middle < ranges_[range_].end)) ++range_;
+    if (range_ == ranges_.size() || middle < ranges_[range_].begin) return false;
+    if (entered_ != range_) enter();
+    return true;
+  }
+
+  const LayerSource& source;
+  const std::unique_ptr<LayerPoints> points;
+
+ private:
+  void enter() {
+    points->restrict_to_range(ranges_[range_]);
+    entered_ = range_;
+  }
+
+  const ClippedLayer& layer_;
+  std::vector<Interval<double>> ranges_;
+  std::size_t range_ = 0, entered_ = 0;  ///< of them; of that to which points are restricted
+};
+
+SampledPath::SampledPath(const std::vector<ClippedLayer>& layers,
+                         const std::vector<LightSource<double>>& lights, const SamplingPlan& plan,
+                         double largest_color)
+    : plan_(plan),
+      lights_(lights),
+      merge_(layers, lights, largest_color, false),
+      on_(layers.size()) {
+  for (const ClippedLayer& layer : layers) layers_.push_back(std::make_unique<LayerOnRay>(layer));
+}
+
+SampledPath::~SampledPath() = default;
+
+RayResult SampledPath::sample(const RayPart& part) {
+  ray_ = part.ray;
+  fold_ = FrontToBackCompositor<double>(plan_.stop());
+  segments_ = 0;
+  sampled_to_ = -1;
+  surfaces_.clear();
+  next_surface_ = 0;
+  gathered_.clear();
+  if (plan_.by_cells()) {
+    go_through_cells(part);
+  } else {
+    step_through(part);
+  }
+  RayResult result;
+  result.cells = result.evaluations = segments_;
+  result.radiance = fold_.radiance();
+  result.optical_depth = fold_.optical_depth();
+  result.opacity = fold_.opacity();
+  if (plan_.depth() && result.opacity > 0) {
+    result.half_opacity_depth = half_opacity_depth(result.opacity);
+  }
+  return result;
+}
+
+void SampledPath::find_surfaces(const RayPart& part) {
+  merge_.start(part);
+  for (MergedPart next; merge_.next(next);) {
+    if (next.kind != MergedPart::Kind::surface) continue;
+    surfaces_.push_back({next.range.begin, next.opacity, next.color});
+    if (next.opacity >= 1) break;
+  }
+}
+
+void SampledPath::step_through(const RayPart& part) {
+  cuts_.clear();
+  for (const auto& layer : layers_) layer->start(part, cuts_);
+  if (cuts_.empty()) return;
+  std::ranges::sort(cuts_);
+  const double first = cuts_.front(), last = cuts_.back();
+  if (merge_.has_surfaces()) {
+    find_surfaces(part);
+    for (const Surface& surface : surfaces_) cuts_.push_back(surface.t);
+    std::ranges::sort(cuts_);
+  }
+  const double step = plan_.step();
+  double index = 0;
+  std::size_t cut = 0;
+  for (double begin = first; begin < last && !fold_.done();) {
+    double next = next_surface_ < surfaces_.size() ? surfaces_[next_surface_].t : infinity;
+    for (const auto& layer : layers_) next = std::min(next, layer->next_from(begin));
+    if (!(next <= last)) break;
+    // Positions are multiples of the step, computed from their index, so that they do not drift.
+    const double skipped = std::floor((next - first) / step);
+    if (skipped > index) {
+      index = skipped;
+      begin = std::max(begin, first + index * step);
+    }
+    const double end = std::min(first + (index + 1) * step, last);
+    for (; cut < cuts_.size() && cuts_[cut] <= begin; ++cut) {
+    }
+    for (; cut < cuts_.size() && cuts_[cut] < end; ++cut) {
+      add_step(begin, cuts_[cut]);
+      begin = std::max(begin, cuts_[cut]);
+    }
+    add_step(begin, end);
+    begin = end;
+    index += 1;
+  }
+  while (next_surface_ < surfaces_.size() && !fold_.done()) add_surface(surfaces_[next_surface_++]);
+}
+
+/// Adds the surfaces in front of a step's end, and the step.
+void SampledPath::add_step(double begin, double end) {
+  while (next_surface_ < surfaces_.size() && surfaces_[next_surface_].t <= begin) {
+    add_surface(surfaces_[next_surface_++]);
+  }
+  if (!(begin < end) || fold_.done()) return;
+  const SamplePositions seen = sample_positions(plan_.rule());
+  const double middle = 0.5 * (begin + end);
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    OnSegment& on = on_[i];
+    LayerOnRay& layer = *layers_[i];
+    const bool was_present = on.present && sampled_to_ == begin && seen.back;
+    on.present = layer.source.look().has_medium() && layer.holds(begin, end);
+    if (!on.present) continue;
+    if (seen.front) {
+      if (was_present) {
+        on.front = on.back;
+      } else {
+        layer.points->find(begin, on.front);
+      }
+    }
+    if (seen.middle) layer.points->find(middle, on.middle);
+    if (seen.back) layer.points->find(end, on.back);
+  }
+  sampled_to_ = end;
+  add_segment(begin, end);
+}
+
+void SampledPath::go_through_cells(const RayPart& part) {
+  merge_.start(part);
+  for (MergedPart next; !fold_.done() && merge_.next(next);) {
+    if (next.kind == MergedPart::Kind::surface) {
+      add_surface({next.range.begin, next.opacity, next.color});
+    }
+    if (next.kind != MergedPart::Kind::medium) continue;
+    const auto [begin, end] = next.range;
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+      OnSegment& on = on_[i];
+      on.present = merge_.key()[i] >= 0;
+      if (!on.present) continue;
+      const LayerStretch& stretch = *merge_.stretches()[i];
+      on.front = point_of(stretch, layers_[i]->source, begin);
+      on.middle = point_of(stretch, layers_[i]->source, 0.5 * (begin + end));
+      on.back = point_of(stretch, layers_[i]->source, end);
+    }
+    add_segment(begin, end);
+  }
+}
+
+void SampledPath::add_segment(double begin, double end) {
+  ++segments_;
+  add(takes_data(plan_.rule()) ? of_data(begin, end) : of_materials(begin, end), begin, end);
+}
+
+void SampledPath::add_surface(const Surface& surface) {
+  add({std::min(-std::log1p(-surface.opacity), opaque_depth), surface.opacity, 1 - surface.opacity,
+       surface.opacity * surface.color},
+      surface.t, surface.t);
+}
+
+void SampledPath::add(const SegmentResult<double>& segment, double begin, double end) {
+  fold_.add(segment);
+  if (plan_.depth() && segment.optical_depth > 0) {
+    gathered_.push_back({begin, end, segment.optical_depth});
+  }
+}
+
+SegmentResult<double> SampledPath::of_materials(double begin, double end) {
+  const SamplePositions seen = sample_positions(plan_.rule());
+  struct Sum {
+    double extinction = 0;
+    Rgb<double> emission{};
+    void add(const Material<double>& here) {
+      extinction += here.extinction;
+      emission += here.extinction * here.color;
+    }
+    Material<double> mean() const {
+      if (!(extinction >= smallest_normal<double>)) return {};
+      return {extinction, (1 / extinction) * emission};
+    }
+  };
+  Material<double> front, middle, back;
+  std::size_t present = 0, last = 0;
+  for (std::size_t i = 0; i < on_.size(); ++i) {
+    if (!on_[i].present) continue;
+    ++present;
+    last = i;
+  }
+  if (present == 0) return {0, 0, 1, {}};
+  const double half = 0.5 * (begin + end);
+  if (present == 1) {
+    OnSegment& on = on_[last];
+    if (seen.front) front = material(last, on.front, begin);
+    if (seen.middle) middle = material(last, on.middle, half);
+    if (seen.back) back = material(last, on.back, end);
+  } else {
+    Sum of_front, of_middle, of_back;
+    for (std::size_t i = 0; i < on_.size(); ++i) {
+      OnSegment& on = on_[i];
+      if (!on.present) continue;
+      if (seen.front) of_front.add(material(i, on.front, begin));
+      if (seen.middle) of_middle.add(material(i, on.middle, half));
+      if (seen.back) of_back.add(material(i, on.back, end));
+    }
+    front = of_front.mean();
+    middle = of_middle.mean();
+    back = of_back.mean();
+  }
+  return material_segment(plan_.rule(), plan_.psi(), front, middle, back, end - begin);
+}
+
+/// Returns what a layer is made of at a point, in light.
+Material<double> SampledPath::material(std::size_t layer, LayerPoint& point, double t) {
+  if (point.function < 0) return {};
+  const LayerSource& source = layers_[layer]->source;
+  Material<double> result =
+      source.functions()[static_cast<std::size_t>(point.function)].evaluate(point.value);
+  const LayerLook& look = source.look();
+  if (!(result.extinction > 0) || !look.is_lit()) return result;
+  layers_[layer]->points->find_gradients(point);
+  if (const PiecewiseLinear<double>* const factor = look.extinction_factor()) {
+    result.extinction *= factor->evaluate(point.factor_argument).extinction;
+  }
+  if (const Reflection<double>* const reflection = look.reflection()) {
+    result.color = light_up(*reflection, lights_.data(), static_cast<int>(lights_.size()),
+                            point.gradient, ray_.at(t), -ray_.direction)
+                       .apply(result.color);
+  }
+  return result;
+}
+
+SegmentResult<double> SampledPath::of_data(double begin, double end) {
+  DepthWeightedColor<double> sum;
+  for (std::size_t i = 0; i < on_.size(); ++i) {
+    OnSegment& on = on_[i];
+    if (!on.present || on.front.function < 0 || on.back.function < 0) continue;
+    if (on.front.function == on.back.function) {
+      add_data(i, on.front, on.back, begin, end, sum);
+      continue;
+    }
+    // Another function from the middle on.
+    const double middle = 0.5 * (begin + end);
+    LayerPoint first = on.front, second = on.back;
+    for (int c = 0; c < max_channels; ++c) {
+      first.value[c] = second.value[c] = 0.5 * (on.front.value[c] + on.back.value[c]);
+    }
+    first.place = second.place = on.back.place;
+    add_data(i, on.front, first, begin, middle, sum);
+    add_data(i, second, on.back, middle, end, sum);
+  }
+  return segment_of_depth(sum.depth, sum.color);
+}
+
+/// Adds the segment of one layer between two points; light is the mean of that at both.
+void SampledPath::add_data(std::size_t layer, LayerPoint& front, LayerPoint& back, double begin,
+                           double end, DepthWeightedColor<double>& sum) {
+  const LayerSource& source = layers_[layer]->source;
+  const MultivariateTransfer<double>& function =
+      source.functions()[static_cast<std::size_t>(front.function)];
+  const double length = end - begin;
+  DepthAndColor of = depth_and_color(data_segment(plan_.rule(), plan_.table(layer, front.function),
+                                                  length / plan_.step(), function, front.value,
+                                                  back.value, length));
+  if (!(of.depth > 0)) return;
+  const LayerLook& look = source.look();
+  if (look.is_lit()) {
+    layers_[layer]->points->find_gradients(front);
+    layers_[layer]->points->find_gradients(back);
+    if (const PiecewiseLinear<double>* const factor = look.extinction_factor()) {
+      of.depth *= 0.5 * (factor->evaluate(front.factor_argument).extinction +
+                         factor->evaluate(back.factor_argument).extinction);
+    }
+    if (const Reflection<double>* const reflection = look.reflection()) {
+      const auto lit = [&](const LayerPoint& point, double t) {
+        return light_up(*reflection, lights_.data(), static_cast<int>(lights_.size()),
+                        point.gradient, ray_.at(t), -ray_.direction)
+            .apply(of.color);
+      };
+      of.color = 0.5 * (lit(front, begin) + lit(back, end));
+    }
+  }
+  sum.add(of.depth, of.color);
+}
+
+/// Within the segment that passes the half, the rules know no more than a constant extinction.
+double SampledPath::half_opacity_depth(double opacity) const {
+  const double target = -std::log1p(-0.5 * opacity);
+  double before = 0;
+  for (const Gathered& segment : gathered_) {
+    if (before + segment.depth >= target) {
+      return segment.begin + (target - before) / segment.depth * (segment.end - segment.begin);
+    }
+    before += segment.depth;
+  }
+  return gathered_.empty() ? infinity : gathered_.back().end;
+}
+
+}  // namespace pellucid
