@@ -20,6 +20,12 @@ constexpr double moving_seconds = 0.06;
 /// Each level has four times the pixels of the coarser one. It takes less than four times as long,
 /// because rays side by side share work; at least this much more.
 constexpr double level_ratio = 4, least_level_ratio = 2;
+/// Once the mouse rests, sampled pictures are refined up to here; then exact ones follow.
+constexpr double sampled_seconds = 0.15;
+/// Voxels between samples.
+constexpr double sampled_step = 1;
+/// Pictures are sampled where the exact ones take at least so many times as long.
+constexpr double least_gain = 1.5;
 /// Pixels along the longer edge of the coarsest picture.
 constexpr int coarsest_edge = 64;
 
@@ -40,34 +46,79 @@ PageMessage as_frame(PageMessage message) {
 bool FrameMaker::render(const Scene& scene, const Lettering& lettering, bool with_error_map,
                         std::function<bool()> is_overtaken) {
   const bool is_exact = scene.integration.method == Method::exact;
-  RenderOptions options;
-  options.preview = preview_levels(scene.size);
-  options.error = with_error_map && is_exact;
-  options.tile = [this](const TileResult& result) { return tile_is_done(result); };
   {
     const std::lock_guard lock(mutex_);
     stop_ = {};
     shown_ = false;
-    options.stop = stop_.get_token();
   }
   scene_ = &scene;
   lettering_ = &lettering;
   is_overtaken_ = std::move(is_overtaken);
   start_ = Clock::now();
-  level_ = levels_ = options.preview;
   shown_in_time_ = false;
   ++number_;
   exact_.reset();
+  int levels = preview_levels(scene.size);
+  if (is_exact && sampling_pays()) {
+    if (!render_samples(scene)) return false;
+    if (shown_in_time_) levels = std::max(shown_level_ - 1, 0);
+  }
+  start_phase(is_exact ? exact_speed_ : sampled_speed_, levels);
+  RenderOptions options;
+  options.preview = levels;
+  options.error = with_error_map && is_exact;
+  options.tile = [this](const TileResult& result) { return tile_is_done(result); };
+  options.stop = stop_.get_token();
   RenderReport report;
   try {
     Image image = renderer_.render(scene, options, &report);
-    level_seconds_[0] = seconds();
+    measure(0);
     publish_exact(image, report);
     exact_ = std::move(image);
     return true;
   } catch (const Cancelled&) {
     return false;
   }
+}
+
+bool FrameMaker::sampling_pays() const {
+  const double exact = exact_speed_.seconds_per_pixel;
+  const double sampled = sampled_speed_.seconds_per_pixel;
+  return !(exact > 0 && sampled > 0) || exact > least_gain * sampled;
+}
+
+bool FrameMaker::render_samples(const Scene& scene) {
+  Scene sampled = scene;
+  sampled.integration.method = Method::midpoint;
+  sampled.integration.step = sampled_step;
+  start_phase(sampled_speed_, preview_levels(scene.size));
+  samples_suffice_ = false;
+  RenderOptions options;
+  options.preview = levels_;
+  options.tile = [this](const TileResult& result) { return tile_is_done(result); };
+  options.stop = stop_.get_token();
+  try {
+    const Image image = sampler_.render(sampled, options);
+    measure(0);
+    return show(0, image);
+  } catch (const Cancelled&) {
+    return samples_suffice_;
+  }
+}
+
+void FrameMaker::start_phase(Speed& speed, int levels) {
+  speed_ = &speed;
+  phase_start_ = Clock::now();
+  level_ = levels_ = levels;
+}
+
+/// Notes that a level of the phase is complete.
+void FrameMaker::measure(int level) {
+  const double now = std::chrono::duration<double>(Clock::now() - phase_start_).count();
+  const double pixels = static_cast<double>(scene_->size.width >> level) *
+                        static_cast<double>(scene_->size.height >> level);
+  speed_->level_seconds[static_cast<std::size_t>(level)] = now;
+  speed_->seconds_per_pixel = now / std::max(pixels, 1.0);
 }
 
 void FrameMaker::interrupt() {
@@ -88,19 +139,22 @@ bool FrameMaker::tile_is_done(const TileResult& result) {
 }
 
 bool FrameMaker::level_is_done(int level, const Image& image) {
-  const double now = seconds();
   const auto l = static_cast<std::size_t>(level);
-  const double last = level_seconds_[l], last_finer = level_seconds_[l - 1];
+  const double last = speed_->level_seconds[l], last_finer = speed_->level_seconds[l - 1];
   const bool is_known = last > 0 && last_finer > 0;
   const double ratio = is_known ? std::max(last_finer / last, least_level_ratio) : level_ratio;
-  level_seconds_[l] = now;
+  measure(level);
+  const double now = seconds();
   // A finer picture that is there in time is better.
   if (now * ratio <= moving_seconds) return true;
-  return show(level, image);
+  if (!show(level, image)) return false;
+  samples_suffice_ = speed_ == &sampled_speed_ && now * ratio > sampled_seconds;
+  return !samples_suffice_ || scene_->integration.method != Method::exact;
 }
 
 bool FrameMaker::show(int level, const Image& image) {
   publish_coarse(level, image);
+  shown_level_ = level;
   {
     const std::lock_guard lock(mutex_);
     shown_ = true;
@@ -114,7 +168,9 @@ void FrameMaker::publish_coarse(int level, const Image& image) {
   const int stride = 1 << level;
   const std::vector<std::uint8_t> bytes = display_bytes(
       image, scene_->background.value_or(calm_background()), DisplayLayout::rgba, stride);
-  publish_(as_frame(binary_message(header("coarse", stride), {as_text(bytes)})));
+  Json json = header("coarse", stride);
+  json["sampled"] = speed_ == &sampled_speed_;
+  publish_(as_frame(binary_message(json, {as_text(bytes)})));
 }
 
 void FrameMaker::publish_exact(const Image& image, const RenderReport& report) {

@@ -18,12 +18,16 @@ namespace pellucid::view {
 
 /// Renders frames from coarse to exact and publishes them. A frame that is overtaken by a newer
 /// scene still shows one coarse picture before it ends, so that a drag is seen while it lasts.
+///
+/// Where the exact method takes longer than samples along the rays, as in light, the first pictures
+/// of a frame are sampled, and say so; the exact ones follow from the finest of these on.
 class FrameMaker {
  public:
   using Publish = std::function<void(PageMessage)>;
 
   /// `threads`: as Renderer has it.
-  FrameMaker(int threads, Publish publish) : publish_(std::move(publish)), renderer_(threads) {}
+  FrameMaker(int threads, Publish publish)
+      : publish_(std::move(publish)), renderer_(threads), sampler_(threads) {}
 
   /// Renders the scene until it is exact, and returns true; or until it is overtaken by a newer
   /// one, and returns false. Throws Error.
@@ -43,6 +47,20 @@ class FrameMaker {
  private:
   using Clock = std::chrono::steady_clock;
 
+  /// What is measured of the frames of each kind.
+  struct Speed {
+    /// When each level was complete, in seconds; of the last frame that had come so far. 0: none
+    /// had.
+    std::array<double, largest_preview + 1> level_seconds{};
+    double seconds_per_pixel = 0;  ///< 0: not known
+  };
+
+  bool sampling_pays() const;
+  /// Shows sampled pictures until a finer one would take too long. Returns false if the frame is
+  /// overtaken.
+  bool render_samples(const Scene& scene);
+  void start_phase(Speed& speed, int levels);
+  void measure(int level);
   bool tile_is_done(const TileResult& result);
   bool level_is_done(int level, const Image& image);
   /// Publishes a complete level. Returns whether the frame goes on.
@@ -52,10 +70,9 @@ class FrameMaker {
   Json header(const char* state, int stride) const;
   double seconds() const;
 
-  static constexpr int most_levels = largest_preview;
-
   Publish publish_;
-  Renderer renderer_;
+  Renderer renderer_, sampler_;  ///< each keeps its set-ups from frame to frame
+  Speed exact_speed_, sampled_speed_;
   std::optional<Image> exact_;
   std::uint64_t number_ = 0;
   Json answered_ = Json::object();
@@ -64,11 +81,12 @@ class FrameMaker {
   const Scene* scene_ = nullptr;
   const Lettering* lettering_ = nullptr;
   std::function<bool()> is_overtaken_;
-  Clock::time_point start_;
+  Clock::time_point start_, phase_start_;
+  Speed* speed_ = nullptr;      ///< of the pictures that are being made
   int levels_ = 0, level_ = 0;  ///< all but the finest; of the tiles that are being rendered
+  int shown_level_ = 0;         ///< of the last picture
   bool shown_in_time_ = false;  ///< shown_, for the threads of the frame
-  /// When each level was complete, in seconds; of the last frame that had come so far. 0: none had.
-  std::array<double, most_levels + 1> level_seconds_{};
+  bool samples_suffice_ = false;
 
   std::mutex mutex_;  ///< of the following
   std::stop_source stop_;

@@ -137,6 +137,7 @@ export class Viewer {
     this.picture.show(frame);
     this.stale = this.failed = false;
     document.body.dataset.frame = frame.number;
+    document.body.dataset.stride = frame.stride;
     this.unit = frame.overlay.unit;
     if (document.activeElement !== this.tolerance) this.tolerance.value = stepAt(frame.tolerance);
     document.getElementById('tolerance-text').textContent = shortNumber(frame.tolerance);
@@ -163,7 +164,9 @@ export class Viewer {
     const tolerance = shortNumber(frame.tolerance);
     if (this.failed) return this.showState('over', 'Not up to date: there is no newer picture');
     if (frame.state === 'coarse') {
-      return this.showState('coarse', `Coarse: every ${frame.stride}th pixel, refining…`
+      const kind = frame.sampled ? 'Sampled' : 'Coarse';
+      if (frame.stride === 1) return this.showState('coarse', `${kind}, refining…`);
+      return this.showState('coarse', `${kind}: every ${frame.stride}th pixel, refining…`
         .replace('2th', '2nd'));
     }
     if (this.stale || this.connection.isAhead()) {

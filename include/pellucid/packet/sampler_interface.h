@@ -13,6 +13,7 @@ struct PellucidSamplerJob {
   PellucidSamplingRule rule;
   const void* transfer;       ///< SamplerTransfer
   const void* preintegrated;  ///< PreintegratedTable; empty where the rule is another
+  const void* light;          ///< PacketLight; null: unlit
   double step;                ///< world length
   double stop;                ///< the transparency at which a ray ends
 };

@@ -124,6 +124,11 @@ mask_t<F> has_unresolved_jump(const BinnedTransfer& t, F least, F most) noexcept
 template <class F>
 struct ExtinctionInterval {
   F lower, upper, at_lower, slope, largest, steepest, color_range, color_slope;
+
+  /// Returns the extinction at a value in it, or that at its nearer end.
+  F bounded(F value) const noexcept {
+    return max(at_lower + slope * (clamp(value, lower, upper) - lower), F(0));
+  }
 };
 
 /// Loads the records of intervals, from the small tables if `are_few`, else from the large ones.

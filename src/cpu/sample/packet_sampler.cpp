@@ -23,7 +23,7 @@ Kernel sampler_of([[maybe_unused]] InstructionSet set) {
 
 std::unique_ptr<const PacketSamplerTracer> PacketSamplerTracer::make(
     const Volume& volume, const BlockClasses& classes, const PiecewiseLinear<float>& transfer,
-    const PreintegratedTable* preintegrated, double step, double stop,
+    const PreintegratedTable* preintegrated, const PacketLight* light, double step, double stop,
     std::optional<InstructionSet> instruction_set) {
   const Kernel kernel = sampler_of(packet_instruction_set(instruction_set));
   double largest_extinction = 0;
@@ -35,13 +35,14 @@ std::unique_ptr<const PacketSamplerTracer> PacketSamplerTracer::make(
     return nullptr;
   }
   return std::unique_ptr<const PacketSamplerTracer>(
-      new PacketSamplerTracer(volume, classes, transfer, preintegrated, step, stop, kernel));
+      new PacketSamplerTracer(volume, classes, transfer, preintegrated, light, step, stop, kernel));
 }
 
 PacketSamplerTracer::PacketSamplerTracer(const Volume& volume, const BlockClasses& classes,
                                          const PiecewiseLinear<float>& transfer,
-                                         const PreintegratedTable* preintegrated, double step,
-                                         double stop, Kernel kernel)
+                                         const PreintegratedTable* preintegrated,
+                                         const PacketLight* light, double step, double stop,
+                                         Kernel kernel)
     : volume_(volume),
       records_(transfer),
       preintegrated_(preintegrated != nullptr ? *preintegrated : PreintegratedTable{}),
@@ -51,6 +52,7 @@ PacketSamplerTracer::PacketSamplerTracer(const Volume& volume, const BlockClasse
   of_grid.classes = classes.block;
   job_.rule = preintegrated != nullptr ? pellucid_preintegrated : pellucid_midpoint;
   job_.preintegrated = &preintegrated_;
+  job_.light = light;
   job_.transfer = &records_.view();
   job_.step = step;
   job_.stop = stop;

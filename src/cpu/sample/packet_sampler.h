@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "pellucid/packet/light.h"
 #include "pellucid/packet/sampler_interface.h"
 #include "pellucid/render/ray_result.h"
 #include "pellucid/scene/volume.h"
@@ -21,11 +22,11 @@ class PacketSamplerTracer {
   /// Null where rays have to go one by one: no such instructions, a rectilinear grid, a single
   /// layer of values, NaN among them, steps too many for an int, or numbers whose squares binary32
   /// has not. All that is given is referred to. `preintegrated`: for this step, null
-  /// for the midpoint rule. `step` in world length; `stop`: the transparency at
-  /// which a ray ends.
+  /// for the midpoint rule; `light`: null where there is none. `step` in world length; `stop`: the
+  /// transparency at which a ray ends.
   static std::unique_ptr<const PacketSamplerTracer> make(
       const Volume& volume, const BlockClasses& classes, const PiecewiseLinear<float>& transfer,
-      const PreintegratedTable* preintegrated, double step, double stop,
+      const PreintegratedTable* preintegrated, const PacketLight* light, double step, double stop,
       std::optional<InstructionSet> instruction_set);
 
   /// Rays in grid coordinates, their parameter the world arc length. Without half_opacity_depth.
@@ -36,8 +37,8 @@ class PacketSamplerTracer {
 
   PacketSamplerTracer(const Volume& volume, const BlockClasses& classes,
                       const PiecewiseLinear<float>& transfer,
-                      const PreintegratedTable* preintegrated, double step, double stop,
-                      Kernel kernel);
+                      const PreintegratedTable* preintegrated, const PacketLight* light,
+                      double step, double stop, Kernel kernel);
 
   const Volume& volume_;
   SamplerRecords records_;

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "grid/grid_light.h"
 #include "multivariate_sampler.h"
 #include "packet_sampler.h"
 #include "packet_setup.h"
@@ -36,10 +37,14 @@ class UnivariateSampler : public RayTracer {
     }
     classes_ = BlockClassesStorage(volume_.block_records(parallel), transfer_.tables(),
                                    task.wanted.largest_color, parallel);
-    packets_ = PacketSamplerTracer::make(volume_, classes_.view(), transfer_.tables().single,
-                                         preintegrated_ ? &preintegrated_->view() : nullptr, step,
-                                         stop_for(task.wanted.largest_color),
-                                         task.options.instruction_set);
+    if (is_lit(task.layer)) {
+      light_ = GridLight::make(task.layer, task.lights, task.wanted);
+      if (!light_) return;
+    }
+    packets_ = PacketSamplerTracer::make(
+        volume_, classes_.view(), transfer_.tables().single,
+        preintegrated_ ? &preintegrated_->view() : nullptr, light_ ? &light_->view() : nullptr,
+        step, stop_for(task.wanted.largest_color), task.options.instruction_set);
   }
 
   bool has_packets() const { return packets_ != nullptr; }
@@ -53,6 +58,7 @@ class UnivariateSampler : public RayTracer {
   TransferTablesStorage transfer_;
   BlockClassesStorage classes_;
   std::unique_ptr<const PreintegratedStorage> preintegrated_;  ///< null: the midpoint rule
+  std::unique_ptr<const GridLight> light_;                     ///< null: unlit
   std::unique_ptr<const PacketSamplerTracer> packets_;         ///< null: packets do not suit it
 };
 
@@ -90,8 +96,7 @@ std::unique_ptr<const RayTracer> made(const TracerTask& task) {
 std::unique_ptr<const RayTracer> make_packet_sampler(const TracerTask& task) {
   const Method method = task.integration.method;
   if (task.options.depth || task.integration.precision == Precision::float64 ||
-      is_lit(task.layer) || has_surfaces(task.layer) ||
-      extinction_factor_of(task.layer) != nullptr) {
+      has_surfaces(task.layer) || extinction_factor_of(task.layer) != nullptr) {
     return nullptr;
   }
   if (const auto* const volume = std::get_if<VolumeContent>(&task.layer.content)) {
@@ -100,7 +105,8 @@ std::unique_ptr<const RayTracer> make_packet_sampler(const TracerTask& task) {
     }
     return made<UnivariateSampler>(task);
   }
-  if (!std::holds_alternative<ChannelsContent>(task.layer.content) || method != Method::midpoint) {
+  if (!std::holds_alternative<ChannelsContent>(task.layer.content) || is_lit(task.layer) ||
+      method != Method::midpoint) {
     return nullptr;
   }
   return made<MultivariateSamplerTracer>(task);

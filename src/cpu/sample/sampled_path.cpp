@@ -245,11 +245,13 @@ void SampledPath::add_step(double begin, double end) {
     add_surface(surfaces_[next_surface_++]);
   }
   if (!(begin < end) || fold_.done()) return;
-  const SamplePositions seen = sample_positions(plan_.rule());
   const double middle = 0.5 * (begin + end);
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     OnSegment& on = on_[i];
     LayerOnRay& layer = *layers_[i];
+    SamplePositions seen = sample_positions(plan_.rule());
+    // Of light.
+    seen.middle = seen.middle || (takes_data(plan_.rule()) && layer.source.look().is_lit());
     const bool was_present = on.present && sampled_to_ == begin && seen.back;
     on.present = layer.source.look().has_medium() && layer.holds(begin, end);
     if (!on.present) continue;
@@ -356,18 +358,24 @@ Material<double> SampledPath::material(std::size_t layer, LayerPoint& point, dou
   const LayerSource& source = layers_[layer]->source;
   Material<double> result =
       source.functions()[static_cast<std::size_t>(point.function)].evaluate(point.value);
-  const LayerLook& look = source.look();
-  if (!(result.extinction > 0) || !look.is_lit()) return result;
+  if (result.extinction > 0 && source.look().is_lit()) light_up_point(layer, point, t, result);
+  return result;
+}
+
+/// Weakens a layer's extinction and lights its color by what is at a point.
+void SampledPath::light_up_point(std::size_t layer, LayerPoint& point, double t,
+                                 Material<double>& material) const {
+  const LayerLook& look = layers_[layer]->source.look();
   layers_[layer]->points->find_gradients(point);
   if (const PiecewiseLinear<double>* const factor = look.extinction_factor()) {
-    result.extinction *= factor->evaluate(point.factor_argument).extinction;
+    material.extinction *= factor->evaluate(point.factor_argument).extinction;
   }
   if (const Reflection<double>* const reflection = look.reflection()) {
-    result.color = light_up(*reflection, lights_.data(), static_cast<int>(lights_.size()),
-                            point.gradient, ray_.at(t), -ray_.direction)
-                       .apply(result.color);
+    material.color =
+        pellucid::light_up(*reflection, lights_.data(), static_cast<int>(lights_.size()),
+                           point.gradient, ray_.at(t), -ray_.direction)
+            .apply(material.color);
   }
-  return result;
 }
 
 SegmentResult<double> SampledPath::of_data(double begin, double end) {
@@ -376,49 +384,36 @@ SegmentResult<double> SampledPath::of_data(double begin, double end) {
     OnSegment& on = on_[i];
     if (!on.present || on.front.function < 0 || on.back.function < 0) continue;
     if (on.front.function == on.back.function) {
-      add_data(i, on.front, on.back, begin, end, sum);
+      add_data(i, on.front.function, on.front.value, on.back.value, begin, end, sum);
       continue;
     }
     // Another function from the middle on.
     const double middle = 0.5 * (begin + end);
-    LayerPoint first = on.front, second = on.back;
+    double mean[max_channels];
     for (int c = 0; c < max_channels; ++c) {
-      first.value[c] = second.value[c] = 0.5 * (on.front.value[c] + on.back.value[c]);
+      mean[c] = 0.5 * (on.front.value[c] + on.back.value[c]);
     }
-    first.place = second.place = on.back.place;
-    add_data(i, on.front, first, begin, middle, sum);
-    add_data(i, second, on.back, middle, end, sum);
+    add_data(i, on.front.function, on.front.value, mean, begin, middle, sum);
+    add_data(i, on.back.function, mean, on.back.value, middle, end, sum);
   }
   return segment_of_depth(sum.depth, sum.color);
 }
 
-/// Adds the segment of one layer between two points; light is the mean of that at both.
-void SampledPath::add_data(std::size_t layer, LayerPoint& front, LayerPoint& back, double begin,
-                           double end, DepthWeightedColor<double>& sum) {
+/// Adds the segment of one layer between two data; in the light of the middle of its step.
+void SampledPath::add_data(std::size_t layer, int number, const double* front, const double* back,
+                           double begin, double end, DepthWeightedColor<double>& sum) {
   const LayerSource& source = layers_[layer]->source;
-  const MultivariateTransfer<double>& function =
-      source.functions()[static_cast<std::size_t>(front.function)];
   const double length = end - begin;
-  DepthAndColor of = depth_and_color(data_segment(plan_.rule(), plan_.table(layer, front.function),
-                                                  length / plan_.step(), function, front.value,
-                                                  back.value, length));
+  DepthAndColor of = depth_and_color(
+      data_segment(plan_.rule(), plan_.table(layer, number), length / plan_.step(),
+                   source.functions()[static_cast<std::size_t>(number)], front, back, length));
   if (!(of.depth > 0)) return;
-  const LayerLook& look = source.look();
-  if (look.is_lit()) {
-    layers_[layer]->points->find_gradients(front);
-    layers_[layer]->points->find_gradients(back);
-    if (const PiecewiseLinear<double>* const factor = look.extinction_factor()) {
-      of.depth *= 0.5 * (factor->evaluate(front.factor_argument).extinction +
-                         factor->evaluate(back.factor_argument).extinction);
-    }
-    if (const Reflection<double>* const reflection = look.reflection()) {
-      const auto lit = [&](const LayerPoint& point, double t) {
-        return light_up(*reflection, lights_.data(), static_cast<int>(lights_.size()),
-                        point.gradient, ray_.at(t), -ray_.direction)
-            .apply(of.color);
-      };
-      of.color = 0.5 * (lit(front, begin) + lit(back, end));
-    }
+  if (source.look().is_lit()) {
+    // A middle in vacuum has no light of its own.
+    LayerPoint& middle = on_[layer].middle.function < 0 ? on_[layer].front : on_[layer].middle;
+    Material<double> material{of.depth, of.color};
+    light_up_point(layer, middle, 0.5 * (begin + end), material);
+    of = {material.extinction, material.color};
   }
   sum.add(of.depth, of.color);
 }

@@ -88,8 +88,10 @@ class SampledPath {
   SegmentResult<double> of_materials(double begin, double end);
   SegmentResult<double> of_data(double begin, double end);
   Material<double> material(std::size_t layer, LayerPoint& point, double t);
-  void add_data(std::size_t layer, LayerPoint& front, LayerPoint& back, double begin, double end,
-                DepthWeightedColor<double>& sum);
+  void light_up_point(std::size_t layer, LayerPoint& point, double t,
+                      Material<double>& material) const;
+  void add_data(std::size_t layer, int number, const double* front, const double* back,
+                double begin, double end, DepthWeightedColor<double>& sum);
   double half_opacity_depth(double opacity) const;
 
   const SamplingPlan& plan_;

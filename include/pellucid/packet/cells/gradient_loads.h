@@ -25,10 +25,7 @@ class GradientLoads {
   /// there is a factor of it, the magnitude.
   void operator()(M lanes, const CellPlaces<N>& places, CubicBernstein<F> (&gradient)[3],
                   CubicBernstein<F>& magnitude) const noexcept {
-    with_value_type(grid_.type, [&](auto value) noexcept {
-      load<decltype(value)>(lanes, places);
-      may_have_vacuum_ = !std::is_integral_v<decltype(value)>;
-    });
+    load(lanes, places.cell);
     const Vec3<F> entry{convert<float>(places.entry.x), convert<float>(places.entry.y),
                         convert<float>(places.entry.z)};
     const Vec3<F> exit{convert<float>(places.exit.x), convert<float>(places.exit.y),
@@ -47,6 +44,35 @@ class GradientLoads {
     if (light_.of_field != 0) {
       for (int a = 0; a < 3; ++a) corners[a] = derivative(a, false);
     }
+    const CubicBernstein<F> along = trilinear_cubic(sizes_of(corners), entry, exit);
+    for (int k = 0; k < 4; ++k) magnitude.b[k] = select(lanes, along.b[k], magnitude.b[k]);
+  }
+
+  /// The same at places [0,1]³ in cells, in plane coordinates.
+  void at(M lanes, const Batch<std::int32_t, N> (&cell)[3], const Vec3<F>& place, Vec3<F>& gradient,
+          F& magnitude) const noexcept {
+    load(lanes, cell);
+    CellCorners<F> corners[3];
+    for (int a = 0; a < 3; ++a) corners[a] = derivative(a, light_.of_field != 0);
+    Vec3<F> in_grid;
+    for (int a = 0; a < 3; ++a) in_grid[a] = trilinear_value(corners[a], place);
+    for (int c = 0; c < 3; ++c) gradient[c] = in_world(c, in_grid.x, in_grid.y, in_grid.z);
+    if (light_.factor == nullptr) return;
+    if (light_.of_field != 0) {
+      for (int a = 0; a < 3; ++a) corners[a] = derivative(a, false);
+    }
+    magnitude = trilinear_value(sizes_of(corners), place);
+  }
+
+ private:
+  void load(M lanes, const Batch<std::int32_t, N> (&cell)[3]) const noexcept {
+    with_value_type(grid_.type, [&](auto value) noexcept {
+      load_values<decltype(value)>(lanes, cell);
+      may_have_vacuum_ = !std::is_integral_v<decltype(value)>;
+    });
+  }
+  /// The lengths of gradients at the corners, in the world.
+  CellCorners<F> sizes_of(const CellCorners<F> (&corners)[3]) const noexcept {
     CellCorners<F> size;
     for (int n = 0; n < 8; ++n) {
       F square(0);
@@ -56,11 +82,8 @@ class GradientLoads {
       }
       size.value[n] = sqrt(square);
     }
-    const CubicBernstein<F> along = trilinear_cubic(size, entry, exit);
-    for (int k = 0; k < 4; ++k) magnitude.b[k] = select(lanes, along.b[k], magnitude.b[k]);
+    return size;
   }
-
- private:
   /// Component c in the world of a gradient in the grid.
   F in_world(int c, const F& x, const F& y, const F& z) const noexcept {
     const float* const w = light_.world_gradient[c];
@@ -71,9 +94,10 @@ class GradientLoads {
 
   /// Loads corners and what is beyond them along each axis.
   template <class Value>
-  [[gnu::flatten, gnu::noinline]] void load(M lanes, const CellPlaces<N>& places) const noexcept {
+  [[gnu::flatten, gnu::noinline]] void load_values(
+      M lanes, const Batch<std::int32_t, N> (&of_lanes)[3]) const noexcept {
     std::int32_t cell[3][N];
-    for (int a = 0; a < 3; ++a) places.cell[a].store(cell[a]);
+    for (int a = 0; a < 3; ++a) of_lanes[a].store(cell[a]);
     const Value* const data = static_cast<const Value*>(grid_.data);
     const Value* lowest[N];
     unsigned at_border = 0;

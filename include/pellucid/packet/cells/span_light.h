@@ -233,10 +233,7 @@ class SpanLight {
     const F result = max(interval.at_lower + interval.slope * (value - interval.lower), F(0));
     return light_.factor == nullptr ? result : result * factor_at(evaluate(part_, u));
   }
-  F factor_at(F magnitude) const noexcept {
-    const F inside = clamp(magnitude, factor_.lower, factor_.upper);
-    return max(factor_.at_lower + factor_.slope * (inside - factor_.lower), F(0));
-  }
+  F factor_at(F magnitude) const noexcept { return factor_.bounded(magnitude); }
   /// Finds where the magnitude leaves its interval of the factor, or turns, behind `from`.
   [[gnu::noinline]] void find_factor_end(M lanes, F from) noexcept {
     const PieceEnd<F> end = piece_end(restrict_to(magnitude_, min(from, F(1)), F(1)), factor_.lower,

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
+#include "pellucid/packet/sample/sample_light.h"
 #include "pellucid/packet/sample/sampler_fold.h"
 #include "pellucid/packet/sample/sampler_march.h"
 #include "pellucid/packet/sample/sampler_transfer.h"
@@ -32,7 +35,14 @@ class PacketSampler {
         stop_(job.stop),
         first_(first),
         count_(count),
-        march_(grid, job.grid_and_rays.rays + first, count, job.step) {}
+        march_(grid, job.grid_and_rays.rays + first, count, job.step) {
+    if (job.light != nullptr) {
+      light_.emplace(grid, *static_cast<const PacketLight*>(job.light), march_);
+    }
+  }
+  // The light refers to the rays.
+  PacketSampler(const PacketSampler&) = delete;
+  PacketSampler& operator=(const PacketSampler&) = delete;
 
   [[gnu::flatten]] void run_midpoint() noexcept {
     const F step(static_cast<float>(step_));
@@ -69,6 +79,14 @@ class PacketSampler {
             material_at(transfer_, select(found[i], value[i], F(transfer_.support_min)));
         depth[i] = select(found[i], material.extinction * length[i], F(0));
         color[i] = material.color;
+        if (!light_) continue;
+        found[i] = depth[i] > F(0);
+        if (none(found[i])) continue;
+        const auto here = (*light_)(found[i], begin + convert<double>(first_half + place[i]));
+        depth[i] *= here.factor;
+        const Rgb<F> lit = here.lit.apply(color[i]);
+        color[i] = {select(found[i], lit.r, F(0)), select(found[i], lit.g, F(0)),
+                    select(found[i], lit.b, F(0))};
       }
       for (int i = 0; i < steps; ++i) {
         if (none(found[i])) continue;
@@ -119,7 +137,9 @@ class PacketSampler {
           share = select(partial, of_part / opacity, share);
           opacity = select(partial, of_part, opacity);
         }
-        fold_.add(opacity, F(1) - opacity, share * radiance);
+        radiance = share * radiance;
+        if (light_) light_step(opacity, radiance, begin, place, length, i);
+        fold_.add(opacity, F(1) - opacity, radiance);
       }
       front = value[steps];
       end_steps();
@@ -148,6 +168,23 @@ class PacketSampler {
     fold_.fold();
     march_.index += I(march_.steps_at_once);
     march_.alive = march_.alive & (fold_.transparency() > D(stop_));
+  }
+
+  /// Multiplies a step by the light in its middle, and its depth by the factor there.
+  void light_step(F& opacity, Rgb<F>& radiance, D begin, const F* place, const F* length,
+                  int i) const noexcept {
+    const M found = opacity > F(0);
+    if (none(found)) return;
+    const F middle = place[i] - F(0.5f) * length[i];
+    const auto here = (*light_)(found, begin + convert<double>(middle));
+    // Beyond, nothing is seen, and logarithms are infinite.
+    const F visible = clamp(opacity, F(smallest_normal<float>), F(1 - 0x1p-24f));
+    const F weakened = attenuation(F(0) - here.factor * log1p(F(0) - visible)).opacity;
+    const Rgb<F> lit = here.lit.apply((F(1) / visible) * radiance);
+    const F seen = select(found, weakened, F(0));
+    opacity = seen;
+    radiance = {select(found, seen * lit.r, F(0)), select(found, seen * lit.g, F(0)),
+                select(found, seen * lit.b, F(0))};
   }
 
   /// preintegrated_step(), of values that are no NaN.
@@ -187,6 +224,7 @@ class PacketSampler {
   double step_, stop_;
   int first_, count_;
   SamplerMarch<N> march_;
+  std::optional<SampleLight<N>> light_;  ///< none: unlit
   SamplerFold<N> fold_;
   I samples_;
 };
