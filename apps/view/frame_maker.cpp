@@ -21,11 +21,7 @@ constexpr double moving_seconds = 0.06;
 /// because rays side by side share work; at least this much more.
 constexpr double level_ratio = 4, least_level_ratio = 2;
 /// Once the mouse rests, sampled pictures are refined up to here; then exact ones follow.
-constexpr double sampled_seconds = 0.15;
-/// Voxels between samples.
-constexpr double sampled_step = 1;
-/// Pictures are sampled where the exact ones take at least so many times as long.
-constexpr double least_gain = 1.5;
+constexpr double enough_seconds = 0.15;
 /// Pixels along the longer edge of the coarsest picture.
 constexpr int coarsest_edge = 64;
 
@@ -59,11 +55,12 @@ bool FrameMaker::render(const Scene& scene, const Lettering& lettering, bool wit
   ++number_;
   exact_.reset();
   int levels = preview_levels(scene.size);
-  if (is_exact && sampling_pays()) {
+  const double pixels = 1.0 * scene.size.width * scene.size.height;
+  if (is_exact && moving_.are_sampled(pixels, moving_seconds)) {
     if (!render_samples(scene)) return false;
     if (shown_in_time_) levels = std::max(shown_level_ - 1, 0);
   }
-  start_phase(is_exact ? exact_speed_ : sampled_speed_, levels);
+  start_phase(!is_exact, levels);
   RenderOptions options;
   options.preview = levels;
   options.error = with_error_map && is_exact;
@@ -81,24 +78,15 @@ bool FrameMaker::render(const Scene& scene, const Lettering& lettering, bool wit
   }
 }
 
-bool FrameMaker::sampling_pays() const {
-  const double exact = exact_speed_.seconds_per_pixel;
-  const double sampled = sampled_speed_.seconds_per_pixel;
-  return !(exact > 0 && sampled > 0) || exact > least_gain * sampled;
-}
-
 bool FrameMaker::render_samples(const Scene& scene) {
-  Scene sampled = scene;
-  sampled.integration.method = Method::midpoint;
-  sampled.integration.step = sampled_step;
-  start_phase(sampled_speed_, preview_levels(scene.size));
+  start_phase(true, preview_levels(scene.size));
   samples_suffice_ = false;
   RenderOptions options;
   options.preview = levels_;
   options.tile = [this](const TileResult& result) { return tile_is_done(result); };
   options.stop = stop_.get_token();
   try {
-    const Image image = sampler_.render(sampled, options);
+    const Image image = sampler_.render(sampled_scene(scene), options);
     measure(0);
     return show(0, image);
   } catch (const Cancelled&) {
@@ -106,8 +94,8 @@ bool FrameMaker::render_samples(const Scene& scene) {
   }
 }
 
-void FrameMaker::start_phase(Speed& speed, int levels) {
-  speed_ = &speed;
+void FrameMaker::start_phase(bool sampled, int levels) {
+  is_sampled_ = sampled;
   phase_start_ = Clock::now();
   level_ = levels_ = levels;
 }
@@ -117,8 +105,8 @@ void FrameMaker::measure(int level) {
   const double now = std::chrono::duration<double>(Clock::now() - phase_start_).count();
   const double pixels = static_cast<double>(scene_->size.width >> level) *
                         static_cast<double>(scene_->size.height >> level);
-  speed_->level_seconds[static_cast<std::size_t>(level)] = now;
-  speed_->seconds_per_pixel = now / std::max(pixels, 1.0);
+  (is_sampled_ ? sampled_seconds_ : exact_seconds_)[static_cast<std::size_t>(level)] = now;
+  moving_.note(is_sampled_, now, pixels);
 }
 
 void FrameMaker::interrupt() {
@@ -140,7 +128,8 @@ bool FrameMaker::tile_is_done(const TileResult& result) {
 
 bool FrameMaker::level_is_done(int level, const Image& image) {
   const auto l = static_cast<std::size_t>(level);
-  const double last = speed_->level_seconds[l], last_finer = speed_->level_seconds[l - 1];
+  const LevelSeconds& of_last = is_sampled_ ? sampled_seconds_ : exact_seconds_;
+  const double last = of_last[l], last_finer = of_last[l - 1];
   const bool is_known = last > 0 && last_finer > 0;
   const double ratio = is_known ? std::max(last_finer / last, least_level_ratio) : level_ratio;
   measure(level);
@@ -148,7 +137,7 @@ bool FrameMaker::level_is_done(int level, const Image& image) {
   // A finer picture that is there in time is better.
   if (now * ratio <= moving_seconds) return true;
   if (!show(level, image)) return false;
-  samples_suffice_ = speed_ == &sampled_speed_ && now * ratio > sampled_seconds;
+  samples_suffice_ = is_sampled_ && now * ratio > enough_seconds;
   return !samples_suffice_ || scene_->integration.method != Method::exact;
 }
 
@@ -169,7 +158,7 @@ void FrameMaker::publish_coarse(int level, const Image& image) {
   const std::vector<std::uint8_t> bytes = display_bytes(
       image, scene_->background.value_or(calm_background()), DisplayLayout::rgba, stride);
   Json json = header("coarse", stride);
-  json["sampled"] = speed_ == &sampled_speed_;
+  json["sampled"] = is_sampled_;
   publish_(as_frame(binary_message(json, {as_text(bytes)})));
 }
 

@@ -12,6 +12,7 @@
 
 #include "overlay.h"
 #include "page_server.h"
+#include "pellucid/cpu/moving_pictures.h"
 #include "pellucid/cpu/renderer.h"
 
 namespace pellucid::view {
@@ -47,19 +48,13 @@ class FrameMaker {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// What is measured of the frames of each kind.
-  struct Speed {
-    /// When each level was complete, in seconds; of the last frame that had come so far. 0: none
-    /// had.
-    std::array<double, largest_preview + 1> level_seconds{};
-    double seconds_per_pixel = 0;  ///< 0: not known
-  };
+  /// When each level was complete, in seconds; of the last frame that had come so far. 0: none had.
+  using LevelSeconds = std::array<double, largest_preview + 1>;
 
-  bool sampling_pays() const;
   /// Shows sampled pictures until a finer one would take too long. Returns false if the frame is
   /// overtaken.
   bool render_samples(const Scene& scene);
-  void start_phase(Speed& speed, int levels);
+  void start_phase(bool sampled, int levels);
   void measure(int level);
   bool tile_is_done(const TileResult& result);
   bool level_is_done(int level, const Image& image);
@@ -72,7 +67,8 @@ class FrameMaker {
 
   Publish publish_;
   Renderer renderer_, sampler_;  ///< each keeps its set-ups from frame to frame
-  Speed exact_speed_, sampled_speed_;
+  MovingPictures moving_;
+  LevelSeconds exact_seconds_{}, sampled_seconds_{};
   std::optional<Image> exact_;
   std::uint64_t number_ = 0;
   Json answered_ = Json::object();
@@ -82,7 +78,7 @@ class FrameMaker {
   const Lettering* lettering_ = nullptr;
   std::function<bool()> is_overtaken_;
   Clock::time_point start_, phase_start_;
-  Speed* speed_ = nullptr;      ///< of the pictures that are being made
+  bool is_sampled_ = false;     ///< whether the pictures that are being made are
   int levels_ = 0, level_ = 0;  ///< all but the finest; of the tiles that are being rendered
   int shown_level_ = 0;         ///< of the last picture
   bool shown_in_time_ = false;  ///< shown_, for the threads of the frame

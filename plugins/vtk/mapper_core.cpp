@@ -195,6 +195,7 @@ void print_state(std::ostream& out, vtkIndent indent, const MapperCore& core) {
       << "\n";
   out << indent << "NumberOfThreads: " << core.settings.threads << "\n";
   out << indent << "Exact: " << core.outcome.exact << "\n";
+  out << indent << "Sampled: " << core.outcome.sampled << "\n";
   out << indent << "LargestError: " << core.outcome.largest_error << "\n";
   out << indent << "PixelsOver: " << core.outcome.pixels_over << "\n";
 }
@@ -329,6 +330,7 @@ Image MapperCore::picture(const Scene& scene, vtkRenderer& renderer, double seco
   options.threads = settings.threads;
   RenderReport report;
   Image image = renderer_.render(scene, options, &report);
+  moving_.note(false, report.seconds, static_cast<double>(report.pixels));
   take(report);
   return image;
 }
@@ -340,18 +342,28 @@ Image MapperCore::picture_in_time(const Scene& scene, vtkRenderer& renderer, dou
   RenderOptions options;
   options.threads = settings.threads;
   options.preview = preview_levels;
-  RunningFrame frame = renderer_.start(scene, options);
+  const double pixels = 1.0 * scene.size.width * scene.size.height;
+  const double allowed = seconds * share_for_rays;
+  const bool sampled = !is_still && moving_.are_sampled(pixels, allowed);
+  outcome.sampled = sampled;
+  RunningFrame frame =
+      sampled ? sampler_.start(sampled_scene(scene), options) : renderer_.start(scene, options);
   const auto is_over = [&] {
     if (is_still) return window->CheckAbortStatus() != 0;
-    return seconds_since(start) > seconds * share_for_rays;
+    return seconds_since(start) > allowed;
   };
   while (!frame.finished()) {
-    if (is_over() && frame.state().level >= 0) return frame.look();
+    const int level = frame.state().level;
+    if (is_over() && level >= 0) {
+      moving_.note(sampled, seconds_since(start), pixels / (1 << 2 * level));
+      return frame.look();
+    }
     std::this_thread::sleep_for(std::chrono::microseconds(300));
   }
   RenderReport report;
   Image image = frame.wait(&report);
-  take(report);
+  moving_.note(sampled, seconds_since(start), pixels);
+  if (!sampled) take(report);
   return image;
 }
 

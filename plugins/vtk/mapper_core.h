@@ -16,6 +16,7 @@
 #include "grid_layers.h"
 #include "mesh_layers.h"
 #include "notes.h"
+#include "pellucid/cpu/moving_pictures.h"
 #include "pellucid/cpu/renderer.h"
 #include "pellucid/scene/scene.h"
 #include "view.h"
@@ -49,7 +50,8 @@ void set_threads(Settings& settings, int threads);
 
 /// What is known of the last picture.
 struct Outcome {
-  bool exact = false;  ///< whether all of its pixels were rendered
+  bool exact = false;    ///< whether all of its pixels were rendered by the exact method
+  bool sampled = false;  ///< whether it was sampled instead, because frames were asked for in time
   /// Of any pixel; infinite if it is not exact.
   double largest_error = std::numeric_limits<double>::infinity();
   long long pixels_over = 0;  ///< pixels whose error is over the tolerance
@@ -128,7 +130,8 @@ class MapperCore {
 
   KeptOfGrids grids_;
   KeptOfMeshes meshes_;
-  Renderer renderer_, shape_renderer_;
+  Renderer renderer_, sampler_, shape_renderer_;
+  MovingPictures moving_;
   vtkSmartPointer<vtkRayCastImageDisplayHelper> display_;
   std::vector<unsigned short> pixels_;
   std::set<std::string> told_;

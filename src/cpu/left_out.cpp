@@ -75,10 +75,6 @@ std::unique_ptr<const RayTracer> make_packet_sampler(const TracerTask&) {
   throw left_out("what samples rays");
 }
 
-std::vector<RayResult> PacketSamplerTracer::trace(const std::vector<RayPart>&) const {
-  throw left_out("what samples rays");
-}
-
 SamplingPlan::SamplingPlan(const std::vector<ClippedLayer>&, const Integration&, double, bool)
     : rule_(SegmentRule::midpoint), by_cells_(false), step_(0), stop_(0), depth_(false) {
   throw left_out("what samples rays");

@@ -128,6 +128,25 @@ TEST(PacketSampler, GivesTheSameWhereNothingCanBeSkipped) {
   expect_same_in_packets(scene, false, "sheet");
 }
 
+/// In light of both kinds of gradients, from lights of all kinds, with a factor of the extinction.
+TEST(PacketSampler, ShadesAsRaysOneByOneDo) {
+  for (const Centering centering : {Centering::point, Centering::cell}) {
+    for (const GradientKind kind : {GradientKind::smooth, GradientKind::field}) {
+      Scene scene = scene_of(sampled<std::uint8_t>({25, 28, 21}, centering, 250, ball), 250);
+      Layer& layer = scene.layers[0];
+      layer.shading = Shading{0.2, 0.7, 0.3, 12, kind, 0.02};
+      scene.lights = {Light{},
+                      {DirectionalLight{{1, 2, -1}}, {0.5, 0.25, 0.75}},
+                      {PointLight{{0.9, 0.1, 0.3}}, {0.3, 0.6, 0.2}}};
+      const std::string name = kind == GradientKind::smooth ? "smooth" : "field";
+      expect_same_in_packets(scene, false, name);
+      layer.gradient_opacity = std::make_shared<const GradientOpacity>(
+          std::vector<GradientOpacity::Point>{{0, 0.1}, {300, 0.7}, {900, 1}});
+      expect_same_in_packets(scene, false, name + ", gradient opacity");
+    }
+  }
+}
+
 TEST(PacketSampler, LeavesWhatItCannotDoToTheScalarSampler) {
   const auto holes = [](double x, double y, double z) {
     return x > 0.5 ? std::numeric_limits<double>::quiet_NaN() : ball(x, y, z);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdint>
 
+#include "pellucid/field/grid_gradient.h"
+#include "pellucid/field/sample.h"
 #include "pellucid/field/structured_grid.h"
 #include "pellucid/field/trilinear.h"
 #include "pellucid/geometry/affine.h"
@@ -99,5 +101,22 @@ PELLUCID_HD void blocks_of(const T* in, T* out) noexcept {
   });
 }
 PELLUCID_DEVICE_KERNEL(blocks_of)
+
+/// Gradients at a place in a cell.
+template <class T>
+PELLUCID_HD void gradients_at_places(const T* in, T* out) noexcept {
+  double data[8];
+  for (int i = 0; i < 8; ++i) data[i] = static_cast<double>(in[i]);
+  const GridAxis<double> axis{nullptr, 2, 0};
+  const StructuredGrid<double, double> grid{data, {axis, axis, axis}};
+  const double x = static_cast<double>(in[8]);
+  const GridPlace<double> place = place_in_grid<double>(grid.axis, {x, x, x});
+  const CornerGradients corners = field_gradients(grid, place.cell);
+  const Mat3<double> map{{{1, 0, 0}, {0, 1, x}, {0, 0, 1}}};
+  const Vec3<double> g = gradient_at(corners, map, place.local);
+  out[0] = static_cast<T>(g.x + g.y + g.z);
+  out[1] = static_cast<T>(magnitude_at(corners, map, place.local) + sample_value(grid, place));
+}
+PELLUCID_DEVICE_KERNEL(gradients_at_places)
 
 }  // namespace pellucid

@@ -10,7 +10,8 @@ __device__ void segment_rules(const T* in, T* out) {
   const float psi[] = {1, 0, 0, 0}, entry[16]{};
   const auto rule = static_cast<SegmentRule>(threadIdx.x);
   const SegmentResult<T> of_materials =
-      material_segment(rule, PsiTable{psi, 2}, front, front, back, in[8]);
+      takes_data(rule) ? SegmentResult<T>{}
+                       : material_segment(rule, PsiTable{psi, 2}, front, front, back, in[8]);
   MultivariateTransfer<T> transfer;
   const Material<T> material[] = {front, back};
   const ChannelTable<T> table{0, {in + 9, material, 2}};

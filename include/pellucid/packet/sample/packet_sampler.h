@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
-
 #include "pellucid/packet/sample/sample_light.h"
 #include "pellucid/packet/sample/sampler_fold.h"
 #include "pellucid/packet/sample/sampler_march.h"
@@ -35,11 +33,8 @@ class PacketSampler {
         stop_(job.stop),
         first_(first),
         count_(count),
-        march_(grid, job.grid_and_rays.rays + first, count, job.step) {
-    if (job.light != nullptr) {
-      light_.emplace(grid, *static_cast<const PacketLight*>(job.light), march_);
-    }
-  }
+        march_(grid, job.grid_and_rays.rays + first, count, job.step),
+        light_(grid, static_cast<const PacketLight*>(job.light), march_) {}
   // The light refers to the rays.
   PacketSampler(const PacketSampler&) = delete;
   PacketSampler& operator=(const PacketSampler&) = delete;
@@ -79,10 +74,10 @@ class PacketSampler {
             material_at(transfer_, select(found[i], value[i], F(transfer_.support_min)));
         depth[i] = select(found[i], material.extinction * length[i], F(0));
         color[i] = material.color;
-        if (!light_) continue;
+        if (!light_.is_lit()) continue;
         found[i] = depth[i] > F(0);
         if (none(found[i])) continue;
-        const auto here = (*light_)(found[i], begin + convert<double>(first_half + place[i]));
+        const auto here = light_(found[i], begin + convert<double>(first_half + place[i]));
         depth[i] *= here.factor;
         const Rgb<F> lit = here.lit.apply(color[i]);
         color[i] = {select(found[i], lit.r, F(0)), select(found[i], lit.g, F(0)),
@@ -138,7 +133,7 @@ class PacketSampler {
           opacity = select(partial, of_part, opacity);
         }
         radiance = share * radiance;
-        if (light_) light_step(opacity, radiance, begin, place, length, i);
+        if (light_.is_lit()) light_step(opacity, radiance, begin, place, length, i);
         fold_.add(opacity, F(1) - opacity, radiance);
       }
       front = value[steps];
@@ -176,7 +171,7 @@ class PacketSampler {
     const M found = opacity > F(0);
     if (none(found)) return;
     const F middle = place[i] - F(0.5f) * length[i];
-    const auto here = (*light_)(found, begin + convert<double>(middle));
+    const auto here = light_(found, begin + convert<double>(middle));
     // Beyond, nothing is seen, and logarithms are infinite.
     const F visible = clamp(opacity, F(smallest_normal<float>), F(1 - 0x1p-24f));
     const F weakened = attenuation(F(0) - here.factor * log1p(F(0) - visible)).opacity;
@@ -224,7 +219,7 @@ class PacketSampler {
   double step_, stop_;
   int first_, count_;
   SamplerMarch<N> march_;
-  std::optional<SampleLight<N>> light_;  ///< none: unlit
+  SampleLight<N> light_;
   SamplerFold<N> fold_;
   I samples_;
 };

@@ -22,17 +22,23 @@ class SampleLight {
     Lit<F> lit;
   };
 
-  /// All must outlive the object.
-  SampleLight(const PacketGrid& grid, const PacketLight& light,
+  /// All must outlive the object. `light`: null where there is none.
+  SampleLight(const PacketGrid& grid, const PacketLight* light,
               const RaysInBlocks<N>& rays) noexcept
-      : grid_(grid), light_(light), rays_(rays), loads_(grid, light) {
+      : grid_(grid),
+        is_lit_(light != nullptr),
+        light_(is_lit_ ? *light : none),
+        rays_(rays),
+        loads_(grid, light_) {
+    if (!is_lit_) return;
     for (int c = 0; c < 3; ++c) {
       D sum(0);
-      for (int a = 0; a < 3; ++a) sum += D(light.world_direction[c][a]) * rays.direction()[a];
+      for (int a = 0; a < 3; ++a) sum += D(light_.world_direction[c][a]) * rays.direction()[a];
       to_eye_[c] = -convert<float>(sum);
     }
   }
 
+  bool is_lit() const noexcept { return is_lit_; }
   /// At a world length along the lanes' rays; in other lanes anything.
   [[gnu::noinline]] AtPoint operator()(M lanes, D along) const noexcept {
     D at[3];
@@ -71,7 +77,10 @@ class SampleLight {
   }
 
  private:
+  static constexpr PacketLight none{};
+
   const PacketGrid& grid_;
+  bool is_lit_;
   const PacketLight& light_;
   const RaysInBlocks<N>& rays_;
   GradientLoads<N> loads_;
