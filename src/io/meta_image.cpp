@@ -215,18 +215,19 @@ std::vector<double> numbers_of(const std::string& text) {
   return numbers;
 }
 
-/// Whether a text is numbers alone, whole ones if wanted.
+/// Whether a text is finite numbers alone, whole ones if wanted.
 bool are_numbers(const std::string& text, bool are_whole) {
   std::istringstream words(text);
   for (std::string word; words >> word;) {
     const auto number = number_of_word<double>(word);
-    if (!number || (are_whole && *number != std::floor(*number))) return false;
+    if (!number || !std::isfinite(*number)) return false;
+    if (are_whole && *number != std::floor(*number)) return false;
   }
   return true;
 }
 
 /// Checks the numbers that MetaIO reads as far as they are some: "12,5" as 12, the first of too
-/// many.
+/// many, and since ITK 5.4 "inf" and "nan" as 0.
 void check_numbers(const std::vector<Field>& fields, const std::string& name) {
   const std::vector<double> axes = numbers_of(value_of(fields, "NDims"));
   const std::size_t n = axes.size() == 1 && axes[0] >= 1 && axes[0] < 10
@@ -251,8 +252,8 @@ void check_numbers(const std::vector<Field>& fields, const std::string& name) {
     throw Error(name + ": the header says \"" + field.key + " = " +
                 scene_json::printable(field.value) + "\", where " +
                 (are_good ? std::to_string(key->most) + " numbers are meant"
-                          : std::string(key->are_whole ? "whole " : "") +
-                                "numbers are meant, with a point before decimals") +
+                          : std::string(key->are_whole ? "whole" : "finite") +
+                                " numbers are meant, with a point before decimals") +
                 "; mend the header");
   }
 }

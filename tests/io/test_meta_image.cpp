@@ -170,8 +170,9 @@ TEST_F(MetaImageTest, BadHeadersAreRefused) {
   };
   EXPECT_TRUE(contains(error(with([](auto& f) { f.spacing = "1 0 3"; })), "spacing"));
   EXPECT_TRUE(contains(error(with([](auto& f) { f.spacing = "1 -2 3"; })), "spacing"));
-  error(with([](auto& f) { f.spacing = "1 nan 3"; }));
-  error(with([](auto& f) { f.offset = "1 inf 3"; }));
+  EXPECT_TRUE(contains(error(with([](auto& f) { f.spacing = "1 nan 3"; })), "finite"));
+  EXPECT_TRUE(contains(error(with([](auto& f) { f.offset = "1 inf 3"; })), "finite"));
+  EXPECT_TRUE(contains(error(with([](auto& f) { f.matrix = "1 0 0 0 -inf 0 0 0 1"; })), "finite"));
   EXPECT_TRUE(contains(error(with([](auto& f) { f.matrix = "1 0 0 1 0 0 0 0 1"; })), "singular"));
   EXPECT_TRUE(contains(error(with([](auto& f) { f.dimensions = "5 0 3"; })), "5 x 0 x 3"));
   EXPECT_TRUE(contains(error(with([](auto& f) { f.dimensions = "5 -4 3"; })), "5 x -4 x 3"));
