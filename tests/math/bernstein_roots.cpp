@@ -35,9 +35,9 @@ BernsteinPolynomial<double, N> with_roots(const std::vector<double>& roots, doub
 
 template <int N>
 std::vector<double> found(const BernsteinPolynomial<double, N>& f) {
-  double position[N];
-  const int count = sign_change_positions(f, position);
-  return {position, position + count};
+  std::vector<double> positions(N);
+  positions.resize(static_cast<std::size_t>(sign_change_positions(f, positions.data())));
+  return positions;
 }
 
 TEST(BernsteinRoots, AreWhereTheFactorsVanish) {
