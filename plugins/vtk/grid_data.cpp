@@ -9,6 +9,7 @@
 #include <vtkMatrix3x3.h>
 #include <vtkRectilinearGrid.h>
 #include <vtkSOADataArrayTemplate.h>
+#include <vtkVersionMacros.h>
 
 #include <algorithm>
 #include <bit>
@@ -88,9 +89,15 @@ struct Component {
     }
   }
 
+  /// Since VTK 9.3 an array of components, each in memory of its own, may move them into one buffer
+  /// whenever someone asks for that; 9.2 counts as 9.3.
+  static constexpr bool components_lie_still = VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 2, 0);
+
   template <class Value>
   void operator()(vtkSOADataArrayTemplate<Value>* array) {
-    if constexpr (is_ours<Value>()) {
+    if constexpr (!components_lie_still) {
+      copy_typed(*array);
+    } else if constexpr (is_ours<Value>()) {
       using Kept = decltype(kept_type<Value>());
       const vtkSmartPointer<vtkDataArray> kept(array);
       const auto* const first =
@@ -103,10 +110,15 @@ struct Component {
   }
   template <class Value>
   void operator()(vtkAOSDataArrayTemplate<Value>* array) {
+    copy_typed(*array);
+  }
+  template <class Array>
+  void copy_typed(Array& array) {
+    using Value = typename Array::ValueType;
     if constexpr (is_ours<Value>()) {
-      copy<decltype(kept_type<Value>())>(*array);
+      copy<decltype(kept_type<Value>())>(array);
     } else {
-      copy<double>(*array);
+      copy<double>(array);
     }
   }
   template <class Kept, class Array>
