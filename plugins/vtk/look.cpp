@@ -2,6 +2,7 @@
 #include "look.h"
 
 #include <vtkPiecewiseFunction.h>
+#include <vtkVersionMacros.h>
 #include <vtkVolumeProperty.h>
 
 #include <algorithm>
@@ -174,6 +175,10 @@ LookRecipe look_recipe(vtkVolumeProperty& property, int component, OpacityMeanin
   return recipe;
 }
 
+/// From VTK's power to that of light.h: since 9.2 VTK has (r·v)^power, next to which |n·h|^(4
+/// power) has highlights of the same width.
+constexpr double power_factor = VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 0) ? 4 : 1;
+
 std::optional<Shading> shading_of(vtkVolumeProperty& property, int component, Notes& notes) {
   if (property.GetShade(component) == 0) return std::nullopt;
   const auto number = [&](double value, double least, double most, double otherwise) {
@@ -185,7 +190,7 @@ std::optional<Shading> shading_of(vtkVolumeProperty& property, int component, No
   shading.ambient = number(property.GetAmbient(component), 0, 1000, 0.1);
   shading.diffuse = number(property.GetDiffuse(component), 0, 1000, 0.7);
   shading.specular = number(property.GetSpecular(component), 0, 1000, 0.2);
-  const double power = property.GetSpecularPower(component);
+  const double power = power_factor * property.GetSpecularPower(component);
   // Below 1 highlights are as wide as at 1, but for VTK's own 0 to 1.
   shading.power = power >= 0 && power < 1 ? 1 : number(power, 1, 1000, 10);
   shading.flatness = 0;

@@ -12,7 +12,7 @@ from ._pellucid import (Channels, Error, Gaussians, GradientOpacity, LabelTable,
                         OpacityTable, TransferFunction, Volume)
 from ._vtk_data import Chosen, chosen_data
 from ._vtk_functions import FunctionReader, Range, joined
-from ._vtk_view import items, matrix_of
+from ._vtk_view import items, matrix_of, power_factor
 from .scene import ClipPlane, Layer, Shading
 
 # vtkVolumeMapper's VTK_CROP_SUBVOLUME: the middle one of 27 regions is kept.
@@ -225,7 +225,7 @@ class LayerMaker:
                                "into it")
             return otherwise if math.isnan(value) else min(max(value, least), most)
 
-        power = look.GetSpecularPower(component)
+        power = power_factor() * look.GetSpecularPower(component)
         return Shading(number(look.GetAmbient(component), 0, 1000, 0.1),
                        number(look.GetDiffuse(component), 0, 1000, 0.7),
                        number(look.GetSpecular(component), 0, 1000, 0.2),

@@ -114,6 +114,14 @@ def has_ambient_light(renderer: Any) -> bool:
                           and lights[0].GetIntensity() == 1)
 
 
+def power_factor() -> float:
+    """From VTK's specular power to that of Shading: since 9.2 VTK has (r·v)^power, next to which
+    |n·h|^(4 power) has highlights of the same width."""
+    from vtkmodules.vtkCommonCore import vtkVersion
+    version = vtkVersion.GetVTKMajorVersion(), vtkVersion.GetVTKMinorVersion()
+    return 4.0 if version >= (9, 2) else 1.0
+
+
 def lights_of(renderer: Any, is_lit: bool, notes: List[str]) -> List[Any]:
     """Lights as the GPU mapper has them. A head light alone is at the camera, also of parallel
     rays; beside others it shines along the camera's axis."""

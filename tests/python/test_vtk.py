@@ -170,6 +170,21 @@ def test_light(stage):
     close(pellucid.vtk.audit(stage.window), 0.03, 2e-3)
 
 
+def test_highlights(stage):
+    """VTK's are Phong's since 9.2, next to which Blinn's of four times the power are as wide."""
+    look = stage.volume.GetProperty()
+    look.ShadeOn()
+    look.SetAmbient(0.1)
+    look.SetDiffuse(0.2)
+    look.SetSpecular(0.6)
+    look.SetSpecularPower(8)
+    audit = pellucid.vtk.audit(stage.window)
+    close(audit, 0.06, 4e-3)
+    shading = audit.scene.layers[0].shading
+    shading.power = 8 if shading.power == 32 else 32
+    assert pellucid.render(audit.scene).compare(audit.theirs).rms > 3 * audit.rms
+
+
 def test_the_head_light_of_parallel_rays(stage):
     """VTK's mapper has it at the position of the camera, near which rays enter the data."""
     stage.camera.ParallelProjectionOn()
