@@ -38,6 +38,17 @@ void add_ramp(ShapedFunction& function, const RampRange& range) {
   function.nodes = foreign::ramp(*range, function.is_color);
 }
 
+/// Whether this VTK's opacities jump where the sharpness is above 0.99.
+bool opacities_jump() {
+  static const bool jump = [] {
+    vtkNew<vtkPiecewiseFunction> sharp;
+    sharp->AddPoint(0, 0, 0.5, 1);
+    sharp->AddPoint(1, 1, 0.5, 1);
+    return sharp->GetValue(0.25) == 0;
+  }();
+  return jump;
+}
+
 ShapedFunction shape_of(vtkPiecewiseFunction& function, double largest, const RampRange& range,
                         Notes& notes) {
   ShapedFunction shape;
@@ -47,6 +58,7 @@ ShapedFunction shape_of(vtkPiecewiseFunction& function, double largest, const Ra
   }
   add_ramp(shape, range);
   shape.is_logarithmic = function.GetUseLogScale();
+  shape.jumps = opacities_jump();
   shape.is_clamped = function.GetClamping() != 0;
   shape.largest = largest;
   return shape;

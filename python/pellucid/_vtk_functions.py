@@ -54,7 +54,7 @@ def joined(a: Curve, b: Curve) -> List[Tuple[float, float, Tuple[float, ...]]]:
 
 
 class FunctionReader:
-    """Reads functions of a volume property to a tolerance, as VTK 9.1's GPU mapper shows them."""
+    """Reads functions of a volume property to a tolerance, as VTK's GPU mapper shows them."""
 
     def __init__(self, look: Any, tolerance: float, what: str, notes: List[str]) -> None:
         self._look, self._what, self._notes = look, what, notes
@@ -95,7 +95,7 @@ class FunctionReader:
         return self._fitted(
             "colors", 3, _nodes(function, 6) or _ramp(ramp, 1.0), True, _RGB if empty else space,
             bool(function.GetHSVWrap()), function.GetScale() == _LOG10,
-            bool(function.GetClamping()),
+            True, bool(function.GetClamping()),
             tuple(function.GetBelowRangeColor()) if function.GetUseBelowRangeColor() else None,
             tuple(function.GetAboveRangeColor()) if function.GetUseAboveRangeColor() else None,
             math.inf, self._deviation, own if is_compared else None, _way(function))
@@ -129,8 +129,9 @@ class FunctionReader:
         nodes = [[x, y, y, y, middle, sharpness]
                  for x, y, middle, sharpness in _nodes(function, 4)]
         return self._fitted("opacities", 1, nodes or _ramp(ramp, 0.5), False, _RGB, True,
-                            bool(function.GetUseLogScale()), bool(function.GetClamping()), None,
-                            None, largest, self._deviation, None if empty else own, None)
+                            bool(function.GetUseLogScale()), _jumps(function),
+                            bool(function.GetClamping()), None, None, largest, self._deviation,
+                            None if empty else own, None)
 
     def _fitted(self, kind: str, width: int, nodes: List[List[float]], *settings: Any) -> Curve:
         numbers = [node for node in nodes if not any(math.isnan(each) for each in node)]
@@ -168,6 +169,14 @@ def _nodes(function: Any, count: int) -> List[List[float]]:
         function.GetNodeValue(i, node)
         nodes.append(node)
     return nodes
+
+
+def _jumps(function: Any) -> bool:
+    """Whether this VTK's opacities jump where the sharpness is above 0.99."""
+    sharp = function.NewInstance()
+    sharp.AddPoint(0, 0, 0.5, 1)
+    sharp.AddPoint(1, 1, 0.5, 1)
+    return bool(sharp.GetValue(0.25) == 0)
 
 
 def _ramp(ramp: Range, end: float) -> List[List[float]]:

@@ -80,8 +80,8 @@ std::vector<Rgb<double>> colors_of(const py::object& rows) {
 
 /// Returns (points (n, 4), deviation, is_coarse, has_no_number) of foreign::fit().
 py::tuple fit_vtk_function(const std::vector<std::array<double, 6>>& nodes, bool is_color,
-                           int space, bool wraps_hue, bool is_logarithmic, bool is_clamped,
-                           const std::optional<std::array<double, 3>>& below,
+                           int space, bool wraps_hue, bool is_logarithmic, bool jumps,
+                           bool is_clamped, const std::optional<std::array<double, 3>>& below,
                            const std::optional<std::array<double, 3>>& above, double largest,
                            double deviation, const py::object& own, const py::object& way) {
   foreign::ShapedFunction function;
@@ -92,6 +92,7 @@ py::tuple fit_vtk_function(const std::vector<std::array<double, 6>>& nodes, bool
   function.space = space;
   function.wraps_hue = wraps_hue;
   function.is_logarithmic = is_logarithmic;
+  function.jumps = jumps;
   function.is_clamped = is_clamped;
   if (below) function.below = rgb_of(*below);
   if (above) function.above = rgb_of(*above);

@@ -16,7 +16,8 @@
 /// Source: VTK 9.1, Rendering/Core/vtkColorTransferFunction.cxx (GetTable and the functions of
 /// Msh), Common/DataModel/vtkPiecewiseFunction.cxx (GetTable), Common/Core/vtkMath.cxx (HSV, Lab,
 /// XYZ); Msh: Moreland, Diverging Color Maps for Scientific Visualization, 2009. Gaussians: VisIt,
-/// VolumeAttributes::GetGaussianOpacities; vtk.js, PiecewiseGaussianWidget::computeOpacities.
+/// VolumeAttributes::GetGaussianOpacities; vtk.js, PiecewiseGaussianWidget::computeOpacities. VTK
+/// 9.3 differs in OpacityNode::jumps alone.
 /// Constants are theirs, rounded as theirs are: the truth here is what those programs show.
 namespace pellucid::foreign {
 
@@ -83,12 +84,13 @@ T limited(const T& value, double largest) {
 ///   s <- (2s)^(1 + 10σ)/2 for s < 1/2 and alike from the other end,
 ///   s <- 3s² - 2s³ + (1 - σ)(2s³ - 3s² + s)   (Hermite with slopes 1 - σ at both ends).
 ///
-/// A σ below 0.01 counts as 0: s; one above 0.99 as 1: a jump at the midpoint. `second_half` says
-/// on which side of the midpoint the whole of s lies.
+/// A σ below 0.01 counts as 0: s; one above 0.99 is a jump at the midpoint if `jumps`, else as
+/// below. `second_half` says on which side of the midpoint the whole of s lies.
 template <class T>
-T node_shape(const T& share, double midpoint, double sharpness, bool second_half, bool hermite) {
+T node_shape(const T& share, double midpoint, double sharpness, bool second_half, bool hermite,
+             bool jumps = true) {
   const double m = std::clamp(midpoint, 0.00001, 0.99999);
-  if (sharpness > 0.99) return T(second_half ? 1 : 0);
+  if (jumps && sharpness > 0.99) return T(second_half ? 1 : 0);
   const T s = second_half ? T(0.5) + T(0.5) * ratio(share - T(m), 1 - m) : T(0.5) * ratio(share, m);
   if (sharpness < 0.01) return s;
   const double p = 1 + 10 * sharpness;

@@ -32,6 +32,7 @@ struct OpacityNode {
   double x = 0, opacity = 0;
   double midpoint = 0.5, sharpness = 0;
   bool logarithmic = false;  ///< the way to the next one goes by ln x
+  bool jumps = true;         ///< at a sharpness above 0.99, as up to VTK 9.2; in 9.3 it is a curve
 };
 
 /// A control point of VisIt's and vtk.js's Gaussians, which reaches from x - width to x + width.

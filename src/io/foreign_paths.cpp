@@ -108,9 +108,9 @@ T Curves::opacity(const T& value, const Place& place) const {
   if (place.opacity + 1 == nodes.size()) return T(nodes.back().opacity);
   const OpacityNode &from = nodes[place.opacity], &to = nodes[place.opacity + 1];
   const T s = way_share(value, from.x, to.x, from.logarithmic);
-  const T opacity =
-      mix(from.opacity, to.opacity,
-          node_shape(s, from.midpoint, from.sharpness, place.opacity_second_half, true));
+  const T opacity = mix(
+      from.opacity, to.opacity,
+      node_shape(s, from.midpoint, from.sharpness, place.opacity_second_half, true, from.jumps));
   return is_outside_ ? limited(opacity, function_.largest_opacity) : opacity;
 }
 

@@ -80,9 +80,7 @@ class Fitter {
     bool is_straight = true, is_logarithmic = false;
   };
 
-  static bool is_sharp(const ShapedNode& node) {
-    return node.sharpness >= 0.01 && node.sharpness <= 0.99;
-  }
+  bool is_jump(const ShapedNode& node) const { return given_.jumps && node.sharpness > 0.99; }
 
   /// Splits the stretches at jumps, and straight ones where they enter and leave the limits.
   void cut() {
@@ -108,11 +106,11 @@ class Fitter {
     }
     const double middle =
         place_at(std::clamp(from.midpoint, 0.00001, 0.99999), from.x, to.x, logarithmic);
-    if (from.sharpness > 0.99) {
+    if (is_jump(from)) {
       add_lines({{from.x, from.y}, {middle, from.y}, {middle, to.y}}, to);
     } else if (space_ == ColorSpace::step) {
       add_lines({{from.x, from.y}, {from.x, to.y}}, to);
-    } else if (space_ == ColorSpace::rgb && !logarithmic && !is_sharp(from)) {
+    } else if (space_ == ColorSpace::rgb && !logarithmic && from.sharpness < 0.01) {
       if (from.midpoint == 0.5) {
         add_lines({{from.x, from.y}}, to);
       } else {
@@ -178,7 +176,8 @@ class Fitter {
         if (straight || i + 1 == stretches_.size()) continue;
         add_way(stretches_[i + 1].node, function.colors.back());
       } else {
-        function.opacities.push_back({node.x, node.y.r, midpoint, sharpness, logarithmic});
+        function.opacities.push_back(
+            {node.x, node.y.r, midpoint, sharpness, logarithmic, given_.jumps});
       }
     }
     if (function.colors.empty()) function.colors.push_back({function.opacities.front().x});

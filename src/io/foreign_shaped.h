@@ -39,7 +39,8 @@ struct ShapedFunction {
   int space = 0;                  ///< as VTK numbers color spaces
   bool wraps_hue = true;
   bool is_logarithmic = false;
-  bool is_clamped = true;                   ///< else it is 0 outside of its nodes
+  bool jumps = true;       ///< where a sharpness is above 0.99, as colors do: OpacityNode::jumps
+  bool is_clamped = true;  ///< else it is 0 outside of its nodes
   std::optional<Rgb<double>> below, above;  ///< colors outside of the nodes, if it is clamped
   double largest =
       std::numeric_limits<double>::infinity();  ///< what is above it, or below 0, is cut
@@ -66,9 +67,9 @@ using SampleWay = std::function<std::vector<Rgb<double>>(const Rgb<double>& from
                                                          const Rgb<double>& to, int count)>;
 
 /// Returns the function within a deviation: exact where it is straight, with chords elsewhere. The
-/// bound is proved for the formulas of VTK 9.1, and for CIEDE2000, whose ways are VTK's alone,
-/// measured. If `own` is given, the curve is compared with it at some places, and what it is off
-/// there beyond the bound becomes the bound. Throws Error for a color space that is not known.
+/// bound is proved for the formulas of VTK 9.1 and 9.3, and for CIEDE2000, whose ways are VTK's
+/// alone, measured. If `own` is given, the curve is compared with it at some places, and what it is
+/// off there beyond the bound becomes the bound. Throws Error for a color space that is not known.
 ///
 /// Limitation: a place where the function jumps belongs to no side.
 FittedCurve fit(const ShapedFunction& function, double deviation, const SampleWay& sample_way = {},

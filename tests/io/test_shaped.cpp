@@ -59,6 +59,27 @@ TEST(ShapedFunction, JumpsWhereSharpnessSaysSo) {
   }
 }
 
+// Opacities of VTK 9.3.
+TEST(ShapedFunction, IsACurveWhereItDoesNotJump) {
+  for (const double sharpness : {0.985, 0.995, 1.0}) {
+    ShapedFunction function = opacities({{0, 0.2}, {10, 0.8}});
+    function.nodes[0].sharpness = sharpness;
+    function.jumps = false;
+    const FittedCurve curve = fit(function, 1e-4);
+    EXPECT_GT(curve.deviation, 1e-5);
+    EXPECT_LE(curve.deviation, 1e-4 + 1e-12);
+    for (double x = 0; x < 10; x += 0.013) {
+      const double p = 1 + 10 * sharpness;
+      const double s = x < 5 ? 0.5 * std::pow(x / 5, p) : 1 - 0.5 * std::pow(2 - x / 5, p);
+      const double shape =
+          3 * s * s - 2 * s * s * s + (1 - sharpness) * (2 * s * s * s - 3 * s * s + s);
+      const double truth = 0.2 + 0.6 * shape;
+      const double off = std::log(std::log1p(-value_at(curve.points, x)) / std::log1p(-truth));
+      EXPECT_LE(std::abs(off), curve.deviation + 1e-12) << x << " " << sharpness;
+    }
+  }
+}
+
 TEST(ShapedFunction, OfALogarithmIsWithinTheDeviation) {
   ShapedFunction function = opacities({{0.01, 0.1}, {1000, 0.9}});
   function.is_logarithmic = true;

@@ -30,7 +30,8 @@ using plugin::Notes;
 struct Shape {
   double midpoint, sharpness;
 };
-constexpr Shape shapes[] = {{0.5, 0}, {0.3, 0}, {0.6, 0.5}, {0.2, 1}, {0.5, 0.02}, {0.45, 0.985}};
+constexpr Shape shapes[] = {{0.5, 0},    {0.3, 0},      {0.6, 0.5},  {0.2, 1},
+                            {0.5, 0.02}, {0.45, 0.985}, {0.6, 0.995}};
 
 vtkSmartPointer<vtkColorTransferFunction> colors(int space, const Shape& shape) {
   auto made = vtkSmartPointer<vtkColorTransferFunction>::New();

@@ -8,7 +8,8 @@ Writes into FOLDER (tests/io/transfer_functions) a file of each case, as ParaVie
 writes it, and vtk_values.csv: case,value,r,g,b,opacity at values within the pieces. The numbers
 come from vtkColorTransferFunction::GetColor and vtkPiecewiseFunction::GetValue of VTK 9.1 (Debian:
 python3-vtk9). With --check nothing is written, and the values that VTK gives now are compared with
-those that stand there; exit code 77 where VTK's Python modules are missing.
+those that stand there; exit code 77 where VTK's Python modules are missing. Opacities of VTK 9.3 do
+not jump at a sharpness above 0.99: there those of slicer_jump are not compared.
 """
 
 import csv
@@ -121,8 +122,11 @@ def main():
         if len(now) != len(stands):
             print(f"{len(stands)} rows, but VTK gives {len(now)}")
             return 1
-        worst = max(abs(float(a) - b) for old, new in zip(stands, now)
-                    for a, b in zip(old[1:], new[1:]))
+        jump = functions(CASES["slicer_jump"])[1].GetValue(0.69) == 0.1
+        worst = 0.0
+        for old, new in zip(stands, now):
+            end = None if jump or old[0] != "slicer_jump" else -1
+            worst = max(worst, *(abs(float(a) - b) for a, b in zip(old[1:end], new[1:end])))
         files = all(json.loads((folder / f"{name}.json").read_text()) == case
                     for name, case in CASES.items())
         print(f"{len(now)} rows; largest difference {worst:.3g}; "
