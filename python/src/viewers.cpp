@@ -153,6 +153,7 @@ class ViewerHandle {
           if constexpr (std::is_same_v<Content, ChannelsContent>) return content.channels.get();
           if constexpr (std::is_same_v<Content, MeshContent>) return content.mesh.get();
           if constexpr (std::is_same_v<Content, LabelContent>) return content.labels.get();
+          if constexpr (std::is_same_v<Content, SourceContent>) return content.source.get();
         },
         layer.content);
   }

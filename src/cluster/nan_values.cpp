@@ -51,6 +51,7 @@ std::size_t nan_of_layer(const Layer& layer, const RayRegion& region, bool is_fi
     }
     return count;
   }
+  if (grid_of(layer) == nullptr) return 0;
   return nan_in_region(*grid_of(layer), layer.transform, region);
 }
 

@@ -134,6 +134,16 @@ RenderOptions options_of_part(const BrickTree& tree, const RenderOptions& option
   return own;
 }
 
+/// Checks the data of a scene that all ranks show.
+void check_shared_data(const Scene& scene) {
+  check_data(scene);
+  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    if (!std::holds_alternative<SourceContent>(scene.layers[i].content)) continue;
+    throw Error("ranks: layer " + std::to_string(i + 1) +
+                " has a stretch source, which ranks do not take; render it in one process");
+  }
+}
+
 }  // namespace
 
 Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
@@ -142,7 +152,7 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
   const int rank = ranks.rank();
   check_equal(ranks, "the version", PELLUCID_VERSION_STRING);
   agreed(ranks, [&] {
-    check_data(own);
+    check_shared_data(own);
     check_integration(own);
     if (options.values) check_values(own);
     if (tree.count() != ranks.size()) {
@@ -226,7 +236,7 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
 
 Image render(Communicator& ranks, const Scene& whole, const RenderOptions& options,
              RankReport* report) {
-  agreed(ranks, [&] { check_data(whole); });
+  agreed(ranks, [&] { check_shared_data(whole); });
   const SceneFrame frame = frame_of(whole);
   const BrickTree tree =
       BrickTree::split(frame.world_from_frame, frame.bounds, ranks.size(), {}, frame.on_grid);

@@ -67,6 +67,10 @@ std::unique_ptr<const LayerSource> make_mesh_source(const LayerTask&) {
   throw left_out("what renders meshes");
 }
 
+std::unique_ptr<const LayerSource> make_own_source(const LayerTask&) {
+  throw left_out("what renders stretch sources");
+}
+
 std::unique_ptr<const LayerSource> make_label_source(const LayerTask&) {
   throw left_out("what renders labels");
 }

@@ -47,6 +47,11 @@ std::unique_ptr<const Field> field_of(const Layer& layer) {
 }  // namespace
 
 SceneIntegral::SceneIntegral(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    if (!std::holds_alternative<SourceContent>(scene.layers[i].content)) continue;
+    throw Error("reference: layer " + std::to_string(i + 1) +
+                " has a stretch source, which the reference does not know; leave it out");
+  }
   if (!is_plain(scene)) {
     const bool lit = std::ranges::any_of(
         scene.layers, [](const Layer& layer) { return layer.visible && is_lit(layer); });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <variant>
 
 #include "layer_light.h"
@@ -11,6 +12,11 @@ namespace pellucid {
 namespace {
 
 double range_of(const Layer& layer) {
+  if (const auto* source = std::get_if<SourceContent>(&layer.content)) {
+    const auto channel = static_cast<std::size_t>(layer.shading->channel);
+    const StretchSource::Variable& variable = source->source->description().variables[channel];
+    return variable.maximum - variable.minimum;
+  }
   const Volume* const volume = lit_volume(layer);
   const VolumeStatistics& data =
       volume != nullptr

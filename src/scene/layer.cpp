@@ -8,6 +8,7 @@
 
 #include "layer_light.h"
 #include "message.h"
+#include "moved_source.h"
 #include "pellucid/scene/absorbing_blocks.h"
 #include "pellucid/scene/error.h"
 
@@ -39,16 +40,20 @@ void for_each_table(const Layer& layer, const Body& body) {
                           }
                         },
                         [](const ChannelsContent&) {},
-                        [&](const MeshContent& content) {
+                        [&](const LabelContent& content) { body(content.table->function()); },
+                        // A mesh or a field of one's own.
+                        [&](const auto& content) {
                           if (content.univariate() != nullptr) body(*content.univariate());
-                        },
-                        [&](const LabelContent& content) { body(content.table->function()); }},
+                        }},
              layer.content);
 }
 
 const MultivariateTransferFunction* multivariate_of(const Layer& layer) noexcept {
   if (const auto* channels = std::get_if<ChannelsContent>(&layer.content)) {
     return channels->transfer_function.get();
+  }
+  if (const auto* source = std::get_if<SourceContent>(&layer.content)) {
+    return source->multivariate();
   }
   const auto* mesh = std::get_if<MeshContent>(&layer.content);
   return mesh != nullptr ? mesh->multivariate() : nullptr;
@@ -74,23 +79,31 @@ class LayerCheck {
     count(*content.transfer_function, content.channels->count());
   }
   void operator()(const MeshContent& content) const {
-    if (!content.mesh || (content.univariate() == nullptr && content.multivariate() == nullptr)) {
-      require(content.mesh, nullptr, "a mesh", "a transfer function");
-    }
-    if (content.multivariate() != nullptr) {
-      count(*content.multivariate(), content.mesh->count());
-    } else if (content.mesh->count() != 1) {
-      fail("the transfer function sees one variable, but the mesh has " +
-           std::to_string(content.mesh->count()) + " channels; leave one of them");
-    }
+    check(content.mesh, content, "a mesh", "the mesh has ", " channels");
   }
   void operator()(const LabelContent& content) const {
     require(content.labels, content.table, "labels", "a table of colors");
+  }
+  void operator()(const SourceContent& content) const {
+    check(content.source, content, "a source", "the source has ", " variables");
   }
 
  private:
   [[noreturn]] void fail(const std::string& what) const { throw Error(where_ + ": " + what); }
 
+  template <class Data, class Content>
+  void check(const Data& data, const Content& content, const char* name, const char* it_has,
+             const char* variables) const {
+    if (!data || (content.univariate() == nullptr && content.multivariate() == nullptr)) {
+      require(data, nullptr, name, "a transfer function");
+    }
+    if (content.multivariate() != nullptr) {
+      count(*content.multivariate(), data->count());
+    } else if (data->count() != 1) {
+      fail("the transfer function sees one variable, but " + std::string(it_has) +
+           std::to_string(data->count()) + variables + "; leave one of them");
+    }
+  }
   template <class Data, class Function>
   void require(const Data& data, const Function& function, const char* name,
                const char* function_name) const {
@@ -113,6 +126,10 @@ void check_projection(const Layer& layer, const std::string& where) {
                 " is of one variable, but the layer has " + why);
   };
   if (std::holds_alternative<LabelContent>(layer.content)) refuse("labels; leave it out");
+  if (std::holds_alternative<SourceContent>(layer.content)) {
+    throw Error(where + ": the projection " + std::string(projection_name(*layer.projection)) +
+                " is of grids and meshes, but the layer has a stretch source; leave it out");
+  }
   if (multivariate_of(layer) != nullptr) {
     refuse("a function of several; give a field or one array with a function of one");
   }
@@ -194,15 +211,14 @@ std::optional<LayerProjection> projection_from_name(std::string_view name) noexc
   return std::nullopt;
 }
 
-const TransferFunction* MeshContent::univariate() const noexcept {
-  const auto* function = std::get_if<std::shared_ptr<const TransferFunction>>(&transfer_function);
-  return function != nullptr ? function->get() : nullptr;
+const TransferFunction* univariate_in(const AnyTransferFunction& function) noexcept {
+  const auto* own = std::get_if<std::shared_ptr<const TransferFunction>>(&function);
+  return own != nullptr ? own->get() : nullptr;
 }
 
-const MultivariateTransferFunction* MeshContent::multivariate() const noexcept {
-  const auto* function =
-      std::get_if<std::shared_ptr<const MultivariateTransferFunction>>(&transfer_function);
-  return function != nullptr ? function->get() : nullptr;
+const MultivariateTransferFunction* multivariate_in(const AnyTransferFunction& function) noexcept {
+  const auto* own = std::get_if<std::shared_ptr<const MultivariateTransferFunction>>(&function);
+  return own != nullptr ? own->get() : nullptr;
 }
 
 bool is_in_place(const Layer& layer) noexcept {
@@ -220,20 +236,21 @@ Layer moved_into_place(const Layer& layer) {
   result.transform = {};
   const Affine<double>& to = layer.transform;
   std::visit(
-      Overloaded{[&](VolumeContent& content) {
-                   content.volume = moved(*content.volume, to);
-                   if (!content.mask) return;
-                   content.mask = std::make_shared<const LabelMask>(
-                       moved(content.mask->labels(), to), content.mask->choices());
-                 },
-                 [&](ChannelsContent& content) {
-                   std::vector<Channel> channels(content.channels->begin(),
-                                                 content.channels->end());
-                   for (Channel& channel : channels) channel.volume = moved(*channel.volume, to);
-                   content.channels = std::make_shared<const Channels>(std::move(channels));
-                 },
-                 [&](MeshContent& content) { content.mesh = moved(*content.mesh, to); },
-                 [&](LabelContent& content) { content.labels = moved(*content.labels, to); }},
+      Overloaded{
+          [&](VolumeContent& content) {
+            content.volume = moved(*content.volume, to);
+            if (!content.mask) return;
+            content.mask = std::make_shared<const LabelMask>(moved(content.mask->labels(), to),
+                                                             content.mask->choices());
+          },
+          [&](ChannelsContent& content) {
+            std::vector<Channel> channels(content.channels->begin(), content.channels->end());
+            for (Channel& channel : channels) channel.volume = moved(*channel.volume, to);
+            content.channels = std::make_shared<const Channels>(std::move(channels));
+          },
+          [&](MeshContent& content) { content.mesh = moved(*content.mesh, to); },
+          [&](LabelContent& content) { content.labels = moved(*content.labels, to); },
+          [&](SourceContent& content) { content.source = moved_source(content.source, to); }},
       result.content);
   return result;
 }
@@ -252,17 +269,28 @@ const Volume* grid_of(const Layer& layer) noexcept {
   return std::visit(
       Overloaded{[](const VolumeContent& content) { return content.volume.get(); },
                  [](const ChannelsContent& content) { return &content.channels->grid(); },
-                 [](const MeshContent&) -> const Volume* { return nullptr; },
-                 [](const LabelContent& content) { return &content.labels->volume(); }},
+                 [](const LabelContent& content) { return &content.labels->volume(); },
+                 [](const auto&) -> const Volume* { return nullptr; }},
       layer.content);
 }
+
+namespace {
+
+/// Returns the box of what is not on a grid, in its own world.
+const Box<double>& box_of(const Layer& layer) noexcept {
+  const auto* const source = std::get_if<SourceContent>(&layer.content);
+  return source != nullptr ? source->source->description().bounds
+                           : std::get<MeshContent>(layer.content).mesh->mesh().bounds();
+}
+
+}  // namespace
 
 std::array<Vec3<double>, 8> world_corners(const Layer& layer) noexcept {
   std::array<Vec3<double>, 8> corners{};
   if (const Volume* const grid = grid_of(layer)) {
     corners = grid->world_corners();
   } else {
-    const Box<double>& box = std::get<MeshContent>(layer.content).mesh->mesh().bounds();
+    const Box<double>& box = box_of(layer);
     for (std::size_t i = 0; i < corners.size(); ++i) {
       for (int a = 0; a < 3; ++a) corners[i][a] = (i >> a & 1) != 0 ? box.upper[a] : box.lower[a];
     }

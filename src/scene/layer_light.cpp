@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "message.h"
+#include "moved_source.h"
 #include "pellucid/scene/error.h"
 #include "voxel_edges.h"
 
@@ -29,6 +30,9 @@ class LightCheck {
     }
     if (layer_.projection) {
       fail("a projected layer has no light and no surfaces; leave one of the two out");
+    }
+    if (const auto* source = std::get_if<SourceContent>(&layer_.content)) {
+      check(source->source->description());
     }
     if (layer_.shading) check(*layer_.shading);
     if (layer_.gradient_opacity) {
@@ -54,6 +58,20 @@ class LightCheck {
          std::to_string(channels_) + ", counted from 0");
   }
 
+  void check(const StretchSource::Description& source) const {
+    if (layer_.shading && !source.has_gradient) {
+      fail("has a shading, but its source has no gradient; leave the shading out");
+    }
+    if (!layer_.gradient_opacity) return;
+    if (!source.has_magnitude) {
+      fail("has a gradient opacity, but its source has no magnitude; leave the opacity out");
+    }
+    if (!keeps_angles(layer_.transform.matrix)) {
+      fail(
+          "has a gradient opacity, and its transform changes the angles of its source; turn, move "
+          "or scale it alike along all axes");
+    }
+  }
   void check(const Shading& shading) const {
     require("shading: ambient", shading.ambient, 0, 1e3);
     require("shading: diffuse", shading.diffuse, 0, 1e3);
@@ -151,6 +169,7 @@ const TransferFunction* table_of(const Layer& layer) noexcept {
   if (const auto* volume = std::get_if<VolumeContent>(&layer.content)) {
     return volume->transfer_function.get();
   }
+  if (const auto* source = std::get_if<SourceContent>(&layer.content)) return source->univariate();
   const auto* mesh = std::get_if<MeshContent>(&layer.content);
   return mesh != nullptr ? mesh->univariate() : nullptr;
 }
@@ -172,11 +191,17 @@ int channels_of(const Layer& layer) noexcept {
   if (const auto* channels = std::get_if<ChannelsContent>(&layer.content)) {
     return channels->channels->count();
   }
+  if (const auto* source = std::get_if<SourceContent>(&layer.content)) {
+    return source->source->count();
+  }
   const auto* mesh = std::get_if<MeshContent>(&layer.content);
   return mesh != nullptr ? mesh->mesh->count() : 1;
 }
 
 double voxel_of(const Layer& layer) noexcept {
+  if (const auto* source = std::get_if<SourceContent>(&layer.content)) {
+    return source->source->description().voxel_size;
+  }
   const Volume* const grid = grid_of(layer);
   if (grid == nullptr) {
     const TetrahedralMesh& mesh = std::get<MeshContent>(layer.content).mesh->mesh();

@@ -46,6 +46,9 @@ std::string why_clear(const Layer& layer) {
     values = value_sample(*volume->volume);
   } else if (const auto* const mesh = std::get_if<MeshContent>(&layer.content)) {
     values = value_sample(*mesh->mesh);
+  } else if (const auto* const source = std::get_if<SourceContent>(&layer.content)) {
+    const StretchSource::Variable& variable = source->source->description().variables.front();
+    values = {variable.minimum, variable.maximum};
   }
   if (values.empty()) return "the data have no number that is finite";
   const Support support = support_of(*function);

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "pellucid/cluster/ray_pixel.h"
+#include "pellucid/cluster/render.h"
 #include "pellucid/cluster/sub_scene.h"
 #include "pellucid/cpu/renderer.h"
 #include "pellucid/scene/absorbing_blocks.h"
@@ -112,6 +113,28 @@ TEST(RenderPixels, AreThoseOfTheFrame) {
   EXPECT_THROW(renderer.render_pixels(scene, {}, {{0, 0, 1}}), Error);
 }
 
+/// One of seven ranks, each of which looks at its own part.
+class OneOfSeven : public Communicator {
+ public:
+  explicit OneOfSeven(int of) : rank_(of) {}
+  int rank() const noexcept override { return rank_; }
+  int size() const noexcept override { return 7; }
+  std::vector<std::string> gather_all(const std::string& own,
+                                      const std::function<void()>&) override {
+    return {own};
+  }
+  void reduce_all(std::span<double>, Reduction) override {}
+  void broadcast(std::span<float>) override {}
+  void composite(std::span<RayPixel>, int) override {}
+  void composite_in_front(std::span<RayPixel>, int) override {}
+  [[noreturn]] void abort(int status) noexcept override { std::_Exit(status); }
+  void send(int, const RankSignal&) override {}
+  std::optional<RankSignal> receive() override { return {}; }
+
+ private:
+  int rank_;
+};
+
 TEST(NanValues, AreCountedOnce) {
   Volume::Description of;
   of.dimensions = {16, 12, 14};
@@ -127,27 +150,6 @@ TEST(NanValues, AreCountedOnce) {
   const SceneFrame frame = frame_of(scene);
   const BrickTree tree =
       BrickTree::split(frame.world_from_frame, frame.bounds, 7, {}, frame.on_grid);
-  /// One of seven ranks, each of which looks at its own part.
-  class OneOfSeven : public Communicator {
-   public:
-    explicit OneOfSeven(int of) : rank_(of) {}
-    int rank() const noexcept override { return rank_; }
-    int size() const noexcept override { return 7; }
-    std::vector<std::string> gather_all(const std::string& own,
-                                        const std::function<void()>&) override {
-      return {own};
-    }
-    void reduce_all(std::span<double>, Reduction) override {}
-    void broadcast(std::span<float>) override {}
-    void composite(std::span<RayPixel>, int) override {}
-    void composite_in_front(std::span<RayPixel>, int) override {}
-    [[noreturn]] void abort(int status) noexcept override { std::_Exit(status); }
-    void send(int, const RankSignal&) override {}
-    std::optional<RankSignal> receive() override { return {}; }
-
-   private:
-    int rank_;
-  };
   std::size_t all = 0, parts = 0;
   for (int rank = 0; rank < 7; ++rank) {
     OneOfSeven own(rank);
@@ -157,6 +159,25 @@ TEST(NanValues, AreCountedOnce) {
   }
   EXPECT_EQ(all, volume->statistics().nan);
   EXPECT_GT(parts, all);  // of the layers around bricks, too
+}
+
+TEST(StretchSources, AreNotForRanks) {
+  class Nothing : public StretchSource {
+   public:
+    Nothing() : StretchSource({"nothing", {{0, 0, 0}, {1, 1, 1}}, {{"x", 0, 1}}}) {}
+    std::unique_ptr<StretchStream> stream(const StretchDemand&) const override { return nullptr; }
+  };
+  Scene scene;
+  scene.layers = {{SourceContent{std::make_shared<const Nothing>(), transfer({{0, 1, {}}})}}};
+  OneOfSeven ranks(0);
+  try {
+    render(ranks, scene);
+    ADD_FAILURE() << "rendered";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "ranks: layer 1 has a stretch source, which ranks do not take; render it in one "
+                 "process");
+  }
 }
 
 Volume::Description description(std::array<int, 3> dimensions, Centering centering) {

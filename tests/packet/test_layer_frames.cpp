@@ -17,6 +17,7 @@
 #include "tests/packet/lit_scenes.h"
 #include "tests/packet/random_layers.h"
 #include "tests/scenes/gallery.h"
+#include "tests/scenes/grid_source.h"
 #include "tests/scenes/layer_makers.h"
 #include "tests/scenes/meshes.h"
 #include "tests/support/instruction_sets.h"
@@ -70,6 +71,40 @@ TEST(LayerPackets, AreWithinWhatTheySayOfTheGeneralPath) {
   EXPECT_LT(unknown, pixels / 20);
   // They are what is tested.
   EXPECT_GT(pieces, 4 * by_caller);
+}
+
+/// The same scenes, whose volumes are fields of one's own: one ray at a time and in packets.
+TEST(LayerPackets, AreTheSameOfFieldsOfOnesOwn) {
+  const int count = number("PELLUCID_TEST_SCENES", 40), first = number("PELLUCID_TEST_SEED", 1);
+  int sources = 0;
+  for (int n = first; n < first + count; ++n) {
+    SCOPED_TRACE(testing::Message() << "scene " << n);
+    Scene scene = RandomLayers(static_cast<unsigned>(n)).scene();
+    Scene own = scene;
+    int of_scene = 0;
+    for (Layer& layer : own.layers) {
+      const auto* const volume = std::get_if<VolumeContent>(&layer.content);
+      const bool has_channels = std::holds_alternative<ChannelsContent>(layer.content);
+      if (!has_channels && (volume == nullptr || volume->mask)) continue;
+      layer = scenes::as_source(layer);
+      ++of_scene;
+    }
+    if (of_scene == 0) continue;
+    sources += of_scene;
+    scene.integration.tolerance = 1e-6;
+    const Image truth = frame(scene, InstructionSet::scalar);
+    for (const auto set :
+         {std::optional(InstructionSet::scalar), std::optional<InstructionSet>()}) {
+      for (const double tolerance : {2e-3, 1e-4}) {
+        own.integration.tolerance = tolerance;
+        const Image image = frame(own, set);
+        SCOPED_TRACE(testing::Message() << (set ? "one by one" : "packets") << ' ' << tolerance);
+        expect_within_errors(image, truth, 1e-7);
+        if (HasFatalFailure()) return;
+      }
+    }
+  }
+  EXPECT_GT(sources, count / 4);
 }
 
 /// Two volumes of these numbers, in a world of this size: one of doubles, one of floats where these

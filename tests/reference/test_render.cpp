@@ -114,6 +114,26 @@ TEST(ReferenceRender, ReportsProgressAndStopsWhenAsked) {
   EXPECT_THROW(render_reference(small_scene(), options), Cancelled);
 }
 
+TEST(ReferenceRender, RefusesFieldsOfOnesOwn) {
+  class Nothing : public StretchSource {
+   public:
+    Nothing() : StretchSource({"nothing", {{0, 0, 0}, {1, 1, 1}}, {{"x", 0, 1}}}) {}
+    std::unique_ptr<StretchStream> stream(const StretchDemand&) const override { return nullptr; }
+  };
+  Scene scene = small_scene();
+  const auto function =
+      std::make_shared<const TransferFunction>(std::vector<TransferFunction::Point>{{0, 1, {}}});
+  scene.layers.push_back({SourceContent{std::make_shared<const Nothing>(), function}});
+  try {
+    render_reference(scene);
+    ADD_FAILURE() << "rendered";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "reference: layer 2 has a stretch source, which the reference does "
+                 "not know; leave it out");
+  }
+}
+
 TEST(ReferenceRender, RefusesWhatRenderRefuses) {
   EXPECT_THROW(render_reference(Scene{}), Error);
   Scene scene = small_scene();

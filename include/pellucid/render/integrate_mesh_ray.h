@@ -144,18 +144,19 @@ class MeshRayIntegrator {
 
 namespace detail {
 
-/// Returns the effect of the data errors of a span on the tables: an upper bound on the change of
-/// the extinction, and of the colors, counted like the extinction that shows them.
+/// Returns the effect of data errors on the tables: an upper bound on the change of the extinction,
+/// and of the colors, counted like the extinction that shows them.
+template <class Data>
 PELLUCID_HD inline double error_through_tables(const MultivariateTransfer<double>& transfer,
-                                               const MeshSpan& span) noexcept {
+                                               const double* value_error,
+                                               const Data* data_of) noexcept {
   double sum = 0;
   for (int i = 0; i < transfer.tables; ++i) {
     const int c = transfer.table[i].channel;
     const PiecewiseLinear<double>& table = transfer.table[i].table;
-    const double off = span.value_error[c];
+    const double off = value_error[c];
     if (!(off > 0)) continue;
-    const CubicBernstein<double> data =
-        as_cubic(LinearBernstein<double>{{span.front[c], span.back[c]}});
+    const CubicBernstein<double> data = as_cubic(data_of[c]);
     const int first = table.interval(data.hull_min() - off),
               last = table.interval(data.hull_max() + off);
     const Sensitivity<double> slopes = sensitivity(table, first, last, off);
@@ -166,15 +167,25 @@ PELLUCID_HD inline double error_through_tables(const MultivariateTransfer<double
   return sum;
 }
 
-/// Returns the effect of the data errors of a span, beyond the rounding that panels charge
+/// Returns the same for a span.
+PELLUCID_HD inline double error_through_tables(const MultivariateTransfer<double>& transfer,
+                                               const MeshSpan& span) noexcept {
+  LinearBernstein<double> data[max_channels];
+  for (int c = 0; c < transfer.channels; ++c) data[c] = {{span.front[c], span.back[c]}};
+  return error_through_tables(transfer, span.value_error, data);
+}
+
+/// Returns the effect of the errors of the channels' data, beyond the rounding that panels charge
 /// themselves, as an upper bound on the change of the extinction: no Gaussian is steeper than
 /// √(2/e) times its peak and |K|, the Frobenius norm.
+template <class Data>
 PELLUCID_HD inline double extinction_error(const MultivariateTransfer<double>& transfer,
-                                           const MeshSpan& span) noexcept {
+                                           const double* value_error, const Data* data) noexcept {
   double moved = 0;
   for (int c = 0; c < transfer.channels; ++c) {
-    const double charged = 8 * rounding_unit<double> * max(abs(span.front[c]), abs(span.back[c]));
-    if (span.value_error[c] > charged) moved = max(moved, span.value_error[c]);
+    const double size = max(abs(data[c].hull_min()), abs(data[c].hull_max()));
+    const double charged = 8 * rounding_unit<double> * size;
+    if (value_error[c] > charged) moved = max(moved, value_error[c]);
   }
   if (!(moved > 0)) return 0;
   double sum = 0;
@@ -183,13 +194,21 @@ PELLUCID_HD inline double extinction_error(const MultivariateTransfer<double>& t
     double square = 0;
     for (int r = 0; r < g.rows; ++r) {
       for (int k = 0; k < g.channels; ++k) {
-        const double off = g.matrix[r][k] * span.value_error[k];
+        const double off = g.matrix[r][k] * value_error[k];
         square += off * off;
       }
     }
     sum += g.peak * min(0.86 * sqrt(square * static_cast<double>(g.channels)), 1.0);
   }
-  return sum + error_through_tables(transfer, span);
+  return sum + error_through_tables(transfer, value_error, data);
+}
+
+/// Returns the same for a span.
+PELLUCID_HD inline double extinction_error(const MultivariateTransfer<double>& transfer,
+                                           const MeshSpan& span) noexcept {
+  LinearBernstein<double> data[max_channels];
+  for (int c = 0; c < transfer.channels; ++c) data[c] = {{span.front[c], span.back[c]}};
+  return extinction_error(transfer, span.value_error, data);
 }
 
 PELLUCID_HD inline void add_span(const MultivariateTransfer<double>& transfer, const MeshSpan& span,

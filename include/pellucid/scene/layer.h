@@ -16,6 +16,7 @@
 #include "pellucid/scene/light.h"
 #include "pellucid/scene/mesh_channels.h"
 #include "pellucid/scene/multivariate_transfer_function.h"
+#include "pellucid/scene/stretch_source.h"
 #include "pellucid/scene/surfaces.h"
 #include "pellucid/scene/transfer_function.h"
 #include "pellucid/scene/volume.h"
@@ -40,19 +41,40 @@ struct ChannelsContent {
   bool operator==(const ChannelsContent&) const = default;  ///< whether it is the same objects
 };
 
+/// A function of one variable or of several.
+using AnyTransferFunction = std::variant<std::shared_ptr<const TransferFunction>,
+                                         std::shared_ptr<const MultivariateTransferFunction>>;
+/// Returns the function of one variable; null if it is of several, or missing.
+const TransferFunction* univariate_in(const AnyTransferFunction& function) noexcept;
+/// Returns the function of several variables; null if it is of one, or missing.
+const MultivariateTransferFunction* multivariate_in(const AnyTransferFunction& function) noexcept;
+
 /// One or several variables on a mesh, with a function of one or of all of them.
 struct MeshContent {
   std::shared_ptr<const MeshChannels> mesh;
-  std::variant<std::shared_ptr<const TransferFunction>,
-               std::shared_ptr<const MultivariateTransferFunction>>
-      transfer_function;
+  AnyTransferFunction transfer_function;
 
-  /// Returns the function of one variable; null if it is of several, or missing.
-  const TransferFunction* univariate() const noexcept;
-  /// Returns the function of several variables; null if it is of one, or missing.
-  const MultivariateTransferFunction* multivariate() const noexcept;
+  const TransferFunction* univariate() const noexcept { return univariate_in(transfer_function); }
+  const MultivariateTransferFunction* multivariate() const noexcept {
+    return multivariate_in(transfer_function);
+  }
 
   bool operator==(const MeshContent&) const = default;  ///< whether it is the same objects
+};
+
+/// A field of one's own, with a function of one or of all of its variables. Its layer has no
+/// projection, and a transform of one with gradient opacity keeps angles. Methods other than
+/// `exact`, devices, ranks, reference pictures and scene files do not take it.
+struct SourceContent {
+  std::shared_ptr<const StretchSource> source;
+  AnyTransferFunction transfer_function;
+
+  const TransferFunction* univariate() const noexcept { return univariate_in(transfer_function); }
+  const MultivariateTransferFunction* multivariate() const noexcept {
+    return multivariate_in(transfer_function);
+  }
+
+  bool operator==(const SourceContent&) const = default;  ///< whether it is the same objects
 };
 
 /// A segmentation with the look of its labels.
@@ -63,7 +85,8 @@ struct LabelContent {
   bool operator==(const LabelContent&) const = default;  ///< whether it is the same objects
 };
 
-using LayerContent = std::variant<VolumeContent, ChannelsContent, MeshContent, LabelContent>;
+using LayerContent =
+    std::variant<VolumeContent, ChannelsContent, MeshContent, LabelContent, SourceContent>;
 
 /// What one number a projected layer is along a ray: of the reconstructed field where the layer has
 /// data and its clips keep them. `mean` and `sum` are ∫ v ds by world length; mean divides it by
@@ -118,7 +141,8 @@ bool has_surfaces(const Layer& layer) noexcept;
 /// Returns the number of variables per point.
 int channels_of(const Layer& layer) noexcept;
 /// Returns the size of a voxel of a layer in its place, in world units: the mean of the three edges
-/// of a mean cell of the grid; of a mesh the edge of a cube of six mean tetrahedra.
+/// of a mean cell of the grid; of a mesh the edge of a cube of six mean tetrahedra; what a field of
+/// one's own gives.
 double voxel_of(const Layer& layer) noexcept;
 /// Returns the gradient at which the squared normal in the layer's medium is a half: g0 of Shading,
 /// in data units per world length. The layer is in its place and has a shading. What the shading
@@ -128,22 +152,23 @@ double voxel_of(const Layer& layer) noexcept;
 ///
 /// with voxel_of(), the mean `side` of the data's box, and where the layer's function absorbs, by
 /// its extinction (value_noise.h): the standard deviation σ of the noise between neighboring
-/// values, and the gradient g that a fiftieth exceeds. Meshes have the last term alone.
+/// values, and the gradient g that a fiftieth exceeds. Meshes and fields of one's own have the last
+/// term alone.
 double flat_gradient(const Layer& layer);
 /// Returns the same for surfaces: 0, unless the shading gives a flatness.
 double flat_gradient_of_surfaces(const Layer& layer) noexcept;
-/// Returns the volume whose gradient lights the layer, which has a shading; null for a mesh.
+/// Returns the volume whose gradient lights the layer, which has a shading; null where it has none.
 const Volume* lit_volume(const Layer& layer) noexcept;
 
-/// Returns the volume whose grid the rays cross; null for a mesh.
+/// Returns the volume whose grid the rays cross; null for a mesh and a field of one's own.
 const Volume* grid_of(const Layer& layer) noexcept;
 /// Returns the corners of a box around the data in the scene's world: the grid's own box, or for a
-/// mesh a box along the axes of its world.
+/// mesh or a field of one's own a box along the axes of its world.
 std::array<Vec3<double>, 8> world_corners(const Layer& layer) noexcept;
 /// Returns the corners of a box around what absorbs, for a camera that looks at it: of grids the
-/// blocks of 8³ cells in which the function absorbs at some value that occurs; of channels, meshes
-/// grids without such a block and projected layers those of world_corners(). Computes the block
-/// records of grids, in parallel if `parallel` is given.
+/// blocks of 8³ cells in which the function absorbs at some value that occurs; of channels, meshes,
+/// fields of one's own, grids without such a block and projected layers those of world_corners().
+/// Computes the block records of grids, in parallel if `parallel` is given.
 std::array<Vec3<double>, 8> visible_corners(const Layer& layer, const ParallelFor& parallel = {});
 /// Returns the largest color component of the layer's functions and surfaces, without light.
 double largest_color(const Layer& layer) noexcept;

@@ -10,6 +10,7 @@ namespace pellucid {
 std::string DeviceLayer::cannot_follow(const Layer& layer, const Integration& integration) {
   const auto* const volume = std::get_if<VolumeContent>(&layer.content);
   if (std::holds_alternative<LabelContent>(layer.content)) return "labels";
+  if (std::holds_alternative<SourceContent>(layer.content)) return "stretch sources";
   if (volume != nullptr && volume->mask) return "masks of labels";
   if (has_surfaces(layer)) return "isosurfaces and slices";
   if (volume == nullptr && layer.shading) return "light on other data than one volume";

@@ -93,6 +93,7 @@ std::unique_ptr<const LayerSource> make_layer_source(const LayerTask& task) {
     return make_channels_source(task);
   }
   if (std::holds_alternative<MeshContent>(task.layer.content)) return make_mesh_source(task);
+  if (std::holds_alternative<SourceContent>(task.layer.content)) return make_own_source(task);
   return make_label_source(task);
 }
 

@@ -17,6 +17,11 @@ Vec3<double> unit(const Vec3<double>& v) {
 
 /// Returns the largest |value| of a channel if one is negative, else 0.
 double largest_if_negative(const Layer& layer, int channel) {
+  if (const auto* const own = std::get_if<SourceContent>(&layer.content)) {
+    const auto& [name, least, most] =
+        own->source->description().variables[static_cast<std::size_t>(channel)];
+    return least < 0 ? std::max(-least, most) : 0;
+  }
   const auto* const channels = std::get_if<ChannelsContent>(&layer.content);
   const auto& data = channels != nullptr
                          ? (*channels->channels)[channel].volume->statistics()

@@ -105,7 +105,7 @@ class LayerMerge::ClippedStream {
       stretch_.function = -1;
       stretch_.primitives = {};
       stretch_.left_out = stretch_.position_error = stretch_.unknown = 0;
-      stretch_.gradient_doubt = 0;
+      stretch_.gradient_error = 0;
       stretch_.by_cell = false;
       if (stream_->next(stretch_)) {
         if (surfaces_) surfaces_->take(stretch_);

@@ -41,7 +41,7 @@ void write_cell(const StructuredWalk<double>::Step& cell, Interval<double> range
 /// Returns false if the gradient is not for lanes.
 bool write_gradient(const LayerLook& look, const LayerStretch& stretch, Interval<double> range,
                     float* to) {
-  if (stretch.gradient_doubt > 0) return false;
+  if (stretch.gradient_error > 0) return false;
   const auto [from, end] = share_of({stretch.begin, stretch.end}, range);
   const bool whole = from <= 0 && end >= 1;
   double largest = 0;

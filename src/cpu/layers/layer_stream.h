@@ -5,52 +5,31 @@
 #include <vector>
 
 #include "layer_look.h"
-#include "pellucid/geometry/ray.h"
-#include "pellucid/math/bernstein.h"
 #include "pellucid/render/integrate_cell.h"
 #include "pellucid/scene/layer.h"
+#include "pellucid/scene/stretch_source.h"
 #include "pellucid/transfer/multivariate.h"
 #include "pellucid/traverse/structured_walk.h"
 
 namespace pellucid {
 
-/// A stretch of a ray on which all channels of a layer are cubics, or the layer is absent.
-struct LayerStretch {
-  double begin = 0, end = 0;  ///< world arc length
-  int function = -1;          ///< index of LayerSource::functions(); -1: absent
-  PrimitiveSet primitives;    ///< of the function: those that may matter
-  double left_out = 0;        ///< upper bound on the extinction of what is ignored here
-  double position_error = 0;  ///< largest error of begin and end together, world length
-  double unknown = 0;         ///< upper bound on an opacity in front of it that is not known
-  CubicBernstein<double> data[max_channels];
-  double value_error[max_channels]{};  ///< of the data, beside their rounding
-  // Of layers that need them (LayerLook):
-  CubicBernstein<double> gradient[3];  ///< in the world, for light
-  double gradient_doubt = 0;           ///< by how much it may be another one, beside its rounding
-  CubicBernstein<double> magnitude;    ///< for gradient opacity
+/// A stretch of a ray on which all channels of a layer are cubics, or the layer is absent. Of
+/// layers that need them (LayerLook) it has gradients; the magnitude is the argument of their
+/// factor.
+struct LayerStretch : FieldStretch {
+  int function = -1;        ///< index of LayerSource::functions(); -1: absent
+  PrimitiveSet primitives;  ///< of the function: those that may matter
+  double left_out = 0;      ///< upper bound on the extinction of what is ignored here
+  double unknown = 0;       ///< upper bound on an opacity in front of it that is not known
 
   /// Whether `cell`, which holds the stretch, is all that is told: neither data nor gradients.
   bool by_cell = false;
   StructuredWalk<double>::Step cell{};
 };
 
-/// The stretches of one layer along rays, one ray after the other. Used by one thread.
-class LayerStream {
- public:
-  LayerStream() = default;
-  LayerStream(const LayerStream&) = delete;
-  LayerStream& operator=(const LayerStream&) = delete;
-  virtual ~LayerStream() = default;
-
-  /// Returns the interval of a ray outside of which the layer is absent; empty if it misses. The
-  /// ray is in the world, with a direction of length 1, and begins at 0.
-  virtual Interval<double> start(const Ray<double>& ray) = 0;
-  /// Restricts the ray to a range, which lies behind all former ones.
-  virtual void restrict_to_range(Interval<double> range) = 0;
-  /// Finds the next stretch of the range, front to back. Between stretches the layer is absent.
-  /// Returns false behind the last one.
-  virtual bool next(LayerStretch& stretch) = 0;
-};
+/// The stretches of one layer along rays, one ray after the other, which do not reach out of the
+/// range. Used by one thread.
+using LayerStream = BasicStretchStream<LayerStretch>;
 
 class LayerPoints;
 
@@ -101,6 +80,7 @@ std::unique_ptr<const LayerSource> make_volume_source(const LayerTask& task);
 std::unique_ptr<const LayerSource> make_channels_source(const LayerTask& task);
 std::unique_ptr<const LayerSource> make_mesh_source(const LayerTask& task);
 std::unique_ptr<const LayerSource> make_label_source(const LayerTask& task);
+std::unique_ptr<const LayerSource> make_own_source(const LayerTask& task);
 
 /// A table as a function of one channel.
 inline MultivariateTransfer<double> transfer_of(const ChannelTable<double>& table) {

@@ -24,7 +24,7 @@ void LitParts::add(const LayerStretch& stretch, const MultivariateTransfer<doubl
   layer.primitives = stretch.primitives;
   std::copy_n(stretch.data, layer.transfer->channels, layer.span.data);
   std::copy_n(stretch.gradient, 3, layer.gradient);
-  layer.gradient_doubt = stretch.gradient_doubt;
+  layer.gradient_doubt = stretch.gradient_error;
   layer.magnitude = stretch.magnitude;
   layer.span.length = stretch.end - stretch.begin;
   if (range_.begin <= stretch.begin && stretch.end <= range_.end) return;

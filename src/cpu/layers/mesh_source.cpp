@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "layers/layer_stream.h"
 #include "layers/mesh_gradient.h"
+#include "layers/variables_source.h"
 #include "mesh/mesh_field_storage.h"
 #include "mesh/mesh_hits.h"
 #include "pellucid/render/integrate_mesh_ray.h"
@@ -14,10 +14,10 @@ namespace pellucid {
 namespace {
 
 /// A mesh with a function of one or of several variables.
-class MeshSource : public LayerSource {
+class MeshSource : public VariablesSource {
  public:
   explicit MeshSource(const LayerTask& task)
-      : LayerSource(task.layer),
+      : VariablesSource(task, std::get<MeshContent>(task.layer.content).transfer_function),
         content_(std::get<MeshContent>(task.layer.content)),
         mesh_(content_.mesh->mesh().view()),
         fields_(*content_.mesh) {
@@ -29,15 +29,6 @@ class MeshSource : public LayerSource {
       magnitude_.emplace(mesh_, fields_.view().channel[factors->channel()], points(),
                          GradientKind::smooth);
     }
-    if (const ChannelTransferFunction* const factor = look().value_factor()) {
-      factor_ = {factor->channel, factor->function.view<double>()};
-    }
-    if (content_.multivariate() != nullptr) {
-      functions_.push_back(content_.multivariate()->view());
-    } else {
-      table_ = {0, content_.univariate()->view<double>()};
-      functions_.push_back(transfer_of(table_));
-    }
   }
 
   std::unique_ptr<LayerStream> stream(bool by_cells) const override;
@@ -48,28 +39,12 @@ class MeshSource : public LayerSource {
   const MeshGradient* gradient() const { return gradient_ ? &*gradient_ : nullptr; }
   const MeshGradient* magnitude() const { return magnitude_ ? &*magnitude_ : nullptr; }
 
-  /// Returns how far errors of the data may change the extinction on a span.
-  double extinction_error(const MeshSpan& span) const {
-    const MultivariateTransfer<double>& transfer = functions_.front();
-    const double of_terms = detail::extinction_error(transfer, span);
-    if (look().value_factor() == nullptr) return std::min(of_terms, most_extinction());
-    MultivariateTransfer<double> alone = transfer_of(factor_);
-    alone.channels = transfer.channels;
-    const MultivariateTransferFunction& function = *content_.multivariate();
-    const double largest = function.largest_factor();
-    const double of_factor = detail::extinction_error(alone, span);
-    const double terms = largest > 0 ? most_extinction() / largest : 0;
-    return std::min(of_terms * largest + of_factor * (terms + of_terms), most_extinction());
-  }
-
  private:
   std::size_t points() const { return content_.mesh->mesh().points().size(); }
 
   const MeshContent& content_;
   Tetrahedra mesh_;
   MeshFieldStorage fields_;
-  ChannelTable<double> table_;
-  ChannelTable<double> factor_;  ///< of a function of several variables that has one
   std::optional<MeshGradient> gradient_, magnitude_;
 };
 
@@ -126,7 +101,9 @@ class MeshStream : public LayerStream {
     const MultivariateTransfer<double>& transfer = source_.functions().front();
     stretch.function = 0;
     stretch.position_error = span.position_error + span.end_error;
-    stretch.left_out = source_.extinction_error(span);
+    stretch.left_out = source_.extinction_error([&](const MultivariateTransfer<double>& function) {
+      return detail::extinction_error(function, span);
+    });
     const double length = span.end - span.begin;
     const double from = (stretch.begin - span.begin) / length;
     const double to = (stretch.end - span.begin) / length;

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "general_path.h"
+#include "interval_near.h"
 #include "layered_packets.h"
-#include "pellucid/geometry/box.h"
 #include "pellucid/traverse/structured_walk.h"
 #include "sample/sampled_path.h"
 
@@ -189,13 +189,11 @@ class SceneTracer : public RayTracer {
       const Ray<double> in_grid = volume->grid_from_world().ray(ray);
       return volume->visit([&](const auto& grid) { return grid_interval(grid.axis, in_grid); });
     }
+    if (const auto* const own = std::get_if<SourceContent>(&layer.content)) {
+      return interval_near(own->source->description().bounds, ray);
+    }
     const Tetrahedra mesh = std::get<MeshContent>(layer.content).mesh->mesh().view();
-    // Far beyond what rounding moves its boundary by.
-    const double beside = 1e-9 * (mesh.coordinate_bound + length(mesh.upper - mesh.lower));
-    const Vec3<double> wider{beside, beside, beside};
-    const Interval<double> inside =
-        intersect(Box<double>{mesh.lower - wider, mesh.upper + wider}, ray);
-    return {std::max(inside.begin, 0.0), inside.end};
+    return interval_near({mesh.lower, mesh.upper}, mesh.coordinate_bound, ray);
   }
 
   /// Cuts a part of a ray where layers begin and end.

@@ -170,9 +170,9 @@ Rgb<double> SurfaceEvents::lit(const Rgb<double>& color, const LayerStretch& str
   const int lights = static_cast<int>(lights_.size());
   const Rgb<double> result = light_surface(*reflection, lights_.data(), lights, along, u, u_error,
                                            length, color, largest_color_, error);
-  if (stretch.gradient_doubt > 0) {
+  if (stretch.gradient_error > 0) {
     error += color_doubt(*reflection, lights_.data(), lights, along.square(), largest_color_,
-                         stretch.gradient_doubt);
+                         stretch.gradient_error);
   }
   return result;
 }

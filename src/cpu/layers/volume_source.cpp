@@ -61,7 +61,7 @@ class GridGradients {
             const PlaneDoubt& planes, LayerStretch& stretch) const {
     if (gradient_) {
       gradient_->along(step, stretch.gradient);
-      stretch.gradient_doubt = gradient_->doubt(step, axis, planes, stretch.gradient);
+      stretch.gradient_error = gradient_->doubt(step, axis, planes, stretch.gradient);
     }
     if (magnitude_) stretch.magnitude = magnitude_->magnitude_along(step);
   }
@@ -261,7 +261,7 @@ class VolumeStream : public GridStream {
     const bool whole = from <= 0 && to >= 1;
     stretch.data[0] = whole ? span_.data[0] : restrict_to(span_.data[0], from, to);
     if (!source_.look().is_lit()) return;
-    stretch.gradient_doubt = whole_.gradient_doubt;
+    stretch.gradient_error = whole_.gradient_error;
     for (int a = 0; a < 3; ++a) {
       stretch.gradient[a] = whole ? whole_.gradient[a] : restrict_to(whole_.gradient[a], from, to);
     }
