@@ -35,7 +35,8 @@ std::unique_ptr<const GridLight> GridLight::make(const Layer&, const std::vector
 }
 
 void GridLight::integrate(const StructuredWalk<double>::Step&, const Ray<double>&,
-                          const PellucidCell&, const TransferTables&, PellucidCellResult&) const {
+                          const PellucidCell&, const TransferTables&, double,
+                          PellucidCellResult&) const {
   throw left_out("what integrates lit cells");
 }
 

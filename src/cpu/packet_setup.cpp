@@ -109,6 +109,7 @@ void read_result(const PellucidRayResult& from, RayResult& to) {
   to.opacity = from.opacity;
   to.optical_depth = from.optical_depth;
   to.error = from.error;
+  to.status = from.status == pellucid_left ? RayStatus::left : RayStatus::followed;
   to.half = {{from.half.begin, from.half.end}, from.half.opacity_before};
   to.proved = from.proved != 0;
   to.cells = from.cells;

@@ -50,9 +50,9 @@ class RayTracer {
   RayTracer& operator=(const RayTracer&) = delete;
   virtual ~RayTracer() = default;
 
-  /// Returns what the parts gather, each by itself. With the method `exact`, an infinite error
-  /// leaves a part to the general path (left_to_general_path()), and so does an infinite
-  /// half_opacity_depth with that depth, within RayResult::half. Safe to call from any thread.
+  /// Returns what the parts gather, each by itself. With the method `exact`, the status may leave a
+  /// part to the general way (left_to_general_path()), and an infinite half_opacity_depth leaves
+  /// that depth to it, within RayResult::half. Safe to call from any thread.
   virtual std::vector<RayResult> trace(const std::vector<RayPart>& parts,
                                        const TraceOptions& options) const = 0;
 
@@ -78,8 +78,10 @@ class RayTracer {
 };
 
 /// A part that a tracer cannot follow within the tolerance.
-inline RayResult left_to_general_path() {
-  return {};
+inline RayResult left_to_general_path(RayStatus status = RayStatus::left) {
+  RayResult left;
+  left.status = status;
+  return left;
 }
 
 /// What is to be followed.

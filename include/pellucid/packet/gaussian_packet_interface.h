@@ -8,8 +8,7 @@
 extern "C" {
 
 struct PellucidGaussianPacketJob {
-  /// Of this the grid without data, its blocks, what is wanted, rays and results. A result whose
-  /// error is infinite is none: the ray is beyond what packets can do.
+  /// Of this the grid without data, its blocks, what is wanted, rays and results.
   PellucidPacketJob grid_and_rays;
   const void* grid;        ///< MultichannelGrid
   const void* primitives;  ///< PrimitiveSet per block: those that matter there

@@ -24,6 +24,12 @@ struct PellucidHalfOpacity {
   double begin, end, opacity_before;
 };
 
+/// What became of a ray, or of a part of one.
+enum PellucidStatus : std::uint8_t {
+  pellucid_followed,
+  pellucid_left  ///< to the next way of following rays: the result means nothing
+};
+
 /// What one ray gathers: RayResult, as far as packets know it.
 struct PellucidRayResult {
   double radiance[3], opacity, optical_depth;
@@ -33,6 +39,7 @@ struct PellucidRayResult {
   std::int32_t skipped, constant, closed, panels, in_double, strides;
   float neighbor_deviation, longest_step;  ///< of grids' rays
   std::uint8_t proved;
+  PellucidStatus status;
 };
 
 /// A part of a cell that binary32, or the packets' rule, is not good enough for: [from, 1] of the
@@ -51,6 +58,7 @@ struct PellucidCellResult {
   double error;          ///< as of RayBudget::spend()
   double opacity_bound;  ///< what the allowance was asked for
   std::uint8_t proved, panels;
+  PellucidStatus status;  ///< pellucid_left: the whole ray is
 };
 
 enum PellucidValue : std::int32_t {

@@ -31,6 +31,14 @@ struct RuleCounts {
   }
 };
 
+/// What became of a ray.
+enum class RayStatus : std::uint8_t {
+  followed,
+  // To another way of following rays; what was found means nothing:
+  left,        ///< to the next way
+  for_one_ray  ///< to the way for one ray: no packets are for it
+};
+
 /// The result of one ray. It is accumulated in double whatever the kernels' number type: summing
 /// thousands of cells in binary32 would cost more accuracy than the kernels do (specification,
 /// 2.3).
@@ -51,6 +59,7 @@ struct RayResult {
   /// `longest_step` is the largest distance between rays, in voxels, that misses no detail; 0 if
   /// unknown.
   float neighbor_deviation = std::numeric_limits<float>::infinity(), longest_step = 0;
+  RayStatus status = RayStatus::followed;
   bool proved = false;   ///< whether `error` is a proved bound, not an estimate
   long evaluations = 0;  ///< of the field: cells gathered and points sampled
   RuleCounts spans;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -112,7 +111,7 @@ class MultivariateTracer : public RayTracer {
     if (cells_) {
       cells_->trace(rays, share, depth_, found.data());
     } else {
-      for (PellucidRayResult& result : found) result.error = left_to_general_path().error;
+      for (PellucidRayResult& result : found) result.status = pellucid_left;
     }
   }
 
@@ -121,14 +120,14 @@ class MultivariateTracer : public RayTracer {
                               std::vector<PellucidRayResult>& found) const {
     std::vector<PellucidRay> left;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (std::isinf(found[i].error)) left.push_back(rays[i]);
+      if (found[i].status == pellucid_left) left.push_back(rays[i]);
     }
     if (left.empty()) return;
     std::vector<PellucidRayResult> alone(left.size());
     integrate(left, share, alone);
     auto next = alone.begin();
     for (PellucidRayResult& result : found) {
-      if (!std::isinf(result.error)) continue;
+      if (result.status != pellucid_left) continue;
       result = *next++;
       result.neighbor_deviation = std::numeric_limits<float>::infinity();
     }

@@ -170,12 +170,13 @@ PellucidCellResult handed_back(const RayResult& found, double opacity) {
           found.error,
           opacity,
           static_cast<std::uint8_t>(found.proved),
-          1};
+          1,
+          pellucid_followed};
 }
 
 void GridLight::integrate(const StructuredWalk<double>::Step& step, const Ray<double>& world,
                           const PellucidCell& cell, const TransferTables& transfer,
-                          PellucidCellResult& result) const {
+                          double least_allowance, PellucidCellResult& result) const {
   const Interval<double> whole{step.t_begin, step.t_end};
   const double length = whole.end - whole.begin;
   const Interval<double> range{whole.begin + cell.from * length, whole.end};
@@ -199,8 +200,13 @@ void GridLight::integrate(const StructuredWalk<double>::Step& step, const Ray<do
   const double most = static_cast<double>(light_.largest_factor) *
                       most_extinction_on(transfer.wide, stretch.data[0], 0);
   const double opacity = std::min(most * (range.end - range.begin), 1.0);
+  const double allowed = cell.allowance_per_opacity * opacity + cell.allowance_flat;
+  if (opacity > 0 && !(allowed >= least_allowance)) {
+    result.status = pellucid_left;
+    return;
+  }
   RayTolerance wanted = wanted_;
-  wanted.tolerance = std::max(cell.allowance_per_opacity * opacity + cell.allowance_flat, 1e-12);
+  wanted.tolerance = std::max(allowed, least_allowance);
   MultivariateRayIntegrator integrator(function, most, wanted, range.end - range.begin);
   parts.integrate(0, cell.position_error, integrator);
   result = handed_back(integrator.result(), opacity);

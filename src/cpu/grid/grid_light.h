@@ -67,9 +67,11 @@ class GridLight {
   const PacketLight& view() const noexcept { return light_; }
   /// Returns the isosurfaces; null where there are none.
   const PacketSurfaces* surfaces() const noexcept { return surfaces_ ? &*surfaces_ : nullptr; }
-  /// Integrates a part of a cell. `step`: the ray's way through it; `world`: the ray.
+  /// Integrates a part of a cell. `step`: the ray's way through it; `world`: the ray. Where less
+  /// than `least_allowance` is allowed for what absorbs, the ray has spent so much that it had
+  /// better be followed otherwise: `result` leaves it.
   void integrate(const StructuredWalk<double>::Step& step, const Ray<double>& world,
-                 const PellucidCell& cell, const TransferTables& transfer,
+                 const PellucidCell& cell, const TransferTables& transfer, double least_allowance,
                  PellucidCellResult& result) const;
 
  private:

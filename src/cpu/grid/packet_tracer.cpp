@@ -34,6 +34,7 @@ constexpr int words_of_a_record = sizeof(BlockRecord) / sizeof(std::int32_t);
 struct CellContext {
   const void* tracer;
   const PellucidRay* rays;
+  double tolerance;
 };
 
 /// Steps get as short as cells that are gone through with closed forms are worth: an eighth of a
@@ -117,7 +118,7 @@ std::vector<PellucidRayResult> PacketTracer::integrate(const std::vector<Pelluci
   std::vector<PellucidRayResult> found(rays.size());
   PellucidPacketJob job = job_;
   job.tolerance *= share;
-  const CellContext context{this, rays.data()};
+  const CellContext context{this, rays.data(), job.tolerance};
   job.rays = rays.data();
   job.results = found.data();
   job.count = static_cast<std::int32_t>(rays.size());
@@ -134,7 +135,7 @@ std::vector<RayResult> PacketTracer::trace(const std::vector<RayPart>& in_grid, 
   const std::vector<PellucidRayResult> found = integrate(inside.ray, share, depth);
   for (std::size_t i = 0; i < found.size(); ++i) {
     RayResult& to = results[inside.of[i]];
-    if (std::isinf(found[i].error)) {
+    if (found[i].status == pellucid_left) {
       to = left_to_general_path();
       continue;
     }
@@ -158,7 +159,7 @@ std::vector<RayResult> PacketTracer::trace(const std::vector<RayPart>& in_grid, 
 
 void PacketTracer::integrate_cell(const void* context, std::int32_t ray, const PellucidCell* cell,
                                   PellucidCellResult* result) {
-  const auto& [of, rays] = *static_cast<const CellContext*>(context);
+  const auto& [of, rays, tolerance] = *static_cast<const CellContext*>(context);
   const PacketTracer& tracer = *static_cast<const PacketTracer*>(of);
   const PellucidRay& from = rays[ray];
   tracer.volume_.visit([&](const auto& grid) {
@@ -191,7 +192,9 @@ void PacketTracer::integrate_cell(const void* context, std::int32_t ray, const P
       const Ray<double> world{
           map.point({from.origin[0], from.origin[1], from.origin[2]}),
           map.matrix * Vec3<double>{from.direction[0], from.direction[1], from.direction[2]}};
-      tracer.light_->integrate(step, world, *cell, tracer.transfer_, *result);
+      const double share = (end - begin) * (1 - cell->from) / (from.end - from.begin);
+      const double least = RayBudget<double>::minimum_allowance(tolerance, share);
+      tracer.light_->integrate(step, world, *cell, tracer.transfer_, least, *result);
       return;
     }
     CubicBernstein<double> data = trilinear_cubic(
@@ -213,7 +216,8 @@ void PacketTracer::integrate_cell(const void* context, std::int32_t ray, const P
                found.clear ? 0 : found.error(tracer.job_.largest_color),
                found.opacity,
                static_cast<std::uint8_t>(found.found.proved),
-               static_cast<std::uint8_t>(found.found.panels)};
+               static_cast<std::uint8_t>(found.found.panels),
+               pellucid_followed};
   });
 }
 

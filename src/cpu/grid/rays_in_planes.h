@@ -12,7 +12,8 @@
 namespace pellucid {
 
 /// Leaves rays to the general path that run along planes between cells, at which gradients `field`
-/// jump: it charges them with what both sides of a plane differ by. `parts` are in the world.
+/// jump: it charges them with what both sides of a plane differ by, one ray at a time. `parts` are
+/// in the world.
 inline void leave_rays_in_planes(const Volume& volume, const std::vector<RayPart>& parts,
                                  std::vector<RayResult>& results) {
   PlaneDoubt planes;
@@ -22,7 +23,9 @@ inline void leave_rays_in_planes(const Volume& volume, const std::vector<RayPart
       const Interval<double> inside = grid_interval(grid.axis, ray, parts[i].range);
       if (inside.empty()) continue;
       planes.start(volume.grid_from_world(), parts[i].ray);
-      if (planes.runs_along_planes(ray, inside)) results[i] = left_to_general_path();
+      if (planes.runs_along_planes(ray, inside)) {
+        results[i] = left_to_general_path(RayStatus::for_one_ray);
+      }
     }
   });
 }

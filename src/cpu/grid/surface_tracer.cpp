@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -78,8 +77,9 @@ class SurfaceTracer : public RayTracer {
     kernel_(&job);
     for (std::size_t i = 0; i < found.size(); ++i) {
       RayResult& to = results[inside.of[i]];
-      if (std::isinf(found[i].error)) {
-        to = left_to_general_path();
+      if (found[i].status == pellucid_left) {
+        // Without a medium lanes would have nothing to do there.
+        to = left_to_general_path(RayStatus::for_one_ray);
       } else {
         to = {};
         read_result(found[i], to);

@@ -31,7 +31,7 @@ class LayeredPackets {
   static bool suit(const LayerSetting& setting);
 
   /// Returns what the parts gather, each off by at most the tolerance beside it. Errors of the
-  /// positions of clips are not counted. An infinite error leaves a part to the general path. Once
+  /// positions of clips are not counted. The status may leave a part to the general path. Once
   /// `stop` is requested, results do not matter.
   std::vector<RayResult> integrate(const std::vector<RayPart>& parts,
                                    const std::vector<double>& tolerances,

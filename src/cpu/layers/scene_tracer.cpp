@@ -23,6 +23,14 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// share of them: what it saves is not worth a share of the tolerance.
 constexpr double short_share = 1.0 / 8;
 
+/// The fewest rays of those given at once that packets are begun for, where most went another way.
+constexpr std::size_t fewest_in_packets = 4;
+
+/// Returns whether a result is none: the part was left, or its numbers overflowed.
+bool is_left(const RayResult& result) {
+  return result.status != RayStatus::followed || !std::isfinite(result.error);
+}
+
 /// Of a ray, a stretch that one tracer follows.
 struct Piece {
   static constexpr int general = -1;
@@ -103,9 +111,8 @@ class SceneTracer : public RayTracer {
     for (const ClippedLayer& layer : layers_) {
       surfaces_ = surfaces_ || has_surfaces(layer.setup->layer());
     }
-    if (only_ == nullptr && !layers_.empty() && !is_sampled()) {
-      packets_ = LayeredPackets::make(layers_, lights_, wanted_, depth_);
-    }
+    // Where most rays have a fast way, what few of them need is made once it is needed.
+    if (only_ == nullptr && !layers_.empty()) packets();
   }
 
   std::optional<Surroundings> surroundings() const override {
@@ -131,11 +138,9 @@ class SceneTracer : public RayTracer {
     if (is_sampled()) return fits_only ? only_->trace(parts, options) : sample(parts, options);
     if (fits_only) {
       std::vector<RayResult> results = only_->trace(parts, options);
-      for (std::size_t i = 0; i < parts.size() && !options.stop.stop_requested(); ++i) {
-        if (std::isinf(results[i].error)) {
-          results[i] = integrate(general, parts[i], wanted_.tolerance * options.share);
-        }
-        if (depth_) find_depth(general, parts[i], results[i]);
+      follow_left(parts, wanted_.tolerance * options.share, options.stop, results, general);
+      for (std::size_t i = 0; depth_ && i < parts.size() && !options.stop.stop_requested(); ++i) {
+        find_depth(general, parts[i], results[i]);
       }
       return results;
     }
@@ -325,17 +330,13 @@ class SceneTracer : public RayTracer {
       TraceOptions own = options;
       own.share *= group.share;
       const LayerSetup& setup = *layers_[static_cast<std::size_t>(group.tracer)].setup;
-      const std::vector<RayResult> found = setup.fast()->trace(group.parts, own);
+      std::vector<RayResult> found = setup.fast()->trace(group.parts, own);
+      follow_left(group.parts, wanted_.tolerance * own.share, own.stop, found, general);
       for (std::size_t k = 0; k < found.size(); ++k) {
         Journey& journey = journeys[group.of[k]];
-        if (std::isinf(found[k].error)) {
-          journey.add_behind(integrate(general, group.parts[k], wanted_.tolerance * own.share),
-                             group.parts[k].range, has_surfaces(setup.layer()));
-        } else {
-          journey.add_behind(found[k], group.parts[k].range, has_surfaces(setup.layer()));
-          if (journey.pieces.size() == 1) {
-            journey.found.half_opacity_depth = found[k].half_opacity_depth;
-          }
+        journey.add_behind(found[k], group.parts[k].range, has_surfaces(setup.layer()));
+        if (journey.pieces.size() == 1) {
+          journey.found.half_opacity_depth = found[k].half_opacity_depth;
         }
       }
     }
@@ -365,25 +366,48 @@ class SceneTracer : public RayTracer {
       tolerances.push_back((1 - ray_left_out_share) * std::min(own, largest_tolerance));
       of.push_back(i);
     }
-    std::vector<RayResult> found;
-    if (packets_) {
-      found = packets_->integrate(ahead, tolerances, options.stop);
-    } else {
-      found.assign(ahead.size(), left_to_general_path());
-    }
+    std::vector<RayResult> found = packets() != nullptr
+                                       ? packets()->integrate(ahead, tolerances, options.stop)
+                                       : std::vector(ahead.size(), left_to_general_path());
     for (std::size_t k = 0; k < ahead.size() && !options.stop.stop_requested(); ++k) {
-      if (std::isinf(found[k].error)) found[k] = made(general).integrate(ahead[k], tolerances[k]);
+      if (is_left(found[k])) found[k] = made(general).integrate(ahead[k], tolerances[k]);
       journeys[of[k]].add_behind(found[k], ahead[k].range, surfaces_);
     }
+  }
+
+  /// Follows the parts that a fast way has left: in packets if there are enough of them, and what
+  /// is still left then one ray at a time.
+  void follow_left(const std::vector<RayPart>& parts, double tolerance, const std::stop_token& stop,
+                   std::vector<RayResult>& results, std::optional<GeneralPath>& general) const {
+    std::vector<RayPart> left;
+    std::vector<std::size_t> of;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      if (!is_left(results[i]) || results[i].status == RayStatus::for_one_ray) continue;
+      left.push_back(parts[i]);
+      of.push_back(i);
+    }
+    tolerance *= 1 - ray_left_out_share;
+    if (left.size() >= fewest_in_packets && packets() != nullptr && !stop.stop_requested()) {
+      const std::vector<double> tolerances(left.size(), tolerance);
+      const std::vector<RayResult> found = packets()->integrate(left, tolerances, stop);
+      for (std::size_t k = 0; k < left.size(); ++k) results[of[k]] = found[k];
+    }
+    for (std::size_t i = 0; i < parts.size() && !stop.stop_requested(); ++i) {
+      if (is_left(results[i])) results[i] = made(general).integrate(parts[i], tolerance);
+    }
+  }
+
+  /// Returns the packets of the general way; null: there are none.
+  const LayeredPackets* packets() const {
+    std::call_once(packets_made_, [&] {
+      if (!is_sampled()) packets_ = LayeredPackets::make(layers_, lights_, wanted_, depth_);
+    });
+    return packets_.get();
   }
 
   GeneralPath& made(std::optional<GeneralPath>& general) const {
     if (!general) general.emplace(layers_, lights_, wanted_);
     return *general;
-  }
-  RayResult integrate(std::optional<GeneralPath>& general, const RayPart& part,
-                      double tolerance) const {
-    return made(general).integrate(part, (1 - ray_left_out_share) * tolerance);
   }
   /// Finds where half of the opacity is reached, if that is not known yet.
   void find_depth(std::optional<GeneralPath>& general, const RayPart& part,
@@ -402,9 +426,10 @@ class SceneTracer : public RayTracer {
   const bool depth_;
   const RayTracer* const only_;  ///< of the only layer, which has no clips; null otherwise
   bool surfaces_ = false;        ///< whether any layer has some
-  std::unique_ptr<const LayeredPackets> packets_;  ///< for the general path's parts; may be null
   mutable std::once_flag plan_made_;
   mutable std::optional<SamplingPlan> plan_;  ///< of a method that samples; made when it is needed
+  mutable std::once_flag packets_made_;
+  mutable std::unique_ptr<const LayeredPackets> packets_;  ///< see packets()
 };
 
 }  // namespace

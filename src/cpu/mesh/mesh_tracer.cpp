@@ -115,8 +115,11 @@ class MeshTracer : public RayTracer {
     std::vector<std::size_t> beyond;
     beyond.reserve(left.size());
     for (std::size_t n = 0; n < left.size(); ++n) {
-      read_result(found[n], results[left[n]]);
-      if (!(results[left[n]].error <= share * wanted_.tolerance)) beyond.push_back(left[n]);
+      RayResult& result = results[left[n]];
+      read_result(found[n], result);
+      if (result.status == RayStatus::left || !(result.error <= share * wanted_.tolerance)) {
+        beyond.push_back(left[n]);
+      }
     }
     left = std::move(beyond);
   }
@@ -201,7 +204,8 @@ class UnivariateMeshTracer : public MeshTracer {
                found.clear ? 0 : found.error(tracer.job_.largest_color),
                found.opacity,
                1,
-               0};
+               0,
+               pellucid_followed};
   }
 
   TransferTablesStorage transfer_;

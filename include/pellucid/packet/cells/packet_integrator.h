@@ -29,7 +29,8 @@ namespace pellucid {
 /// If `is_lit`, each piece is shaded in binary32 (light_lanes.h); there are no smooth steps, and
 /// what binary32 is not good enough for is handed back at once. The values of isosurfaces are
 /// control points of the extinction, so that pieces end where a ray meets one (surface_lanes.h). If
-/// binary32 cannot tell whether it does, the ray's error is infinite: it is for the general path.
+/// binary32 cannot tell whether it does, the ray is left (PellucidStatus), and so it is where what
+/// integrates a cell by other means leaves it.
 template <int N, bool is_lit = false>
 class PacketIntegrator {
  public:
@@ -82,8 +83,7 @@ class PacketIntegrator {
 
   void store(PellucidRayResult* results) const noexcept {
     const SegmentResult<D> all = fold_.result();
-    const D unknown(std::numeric_limits<double>::infinity());
-    const D error = select(failed_, unknown, fold_.error(convert<double>(pieces_ + strides_)));
+    const D error = fold_.error(convert<double>(pieces_ + strides_));
     const F neighbor_deviation = smooth_.neighbor_deviation();
     const F longest_step = smooth_.longest_step();
     for (int l = 0; l < count_; ++l) {
@@ -103,7 +103,8 @@ class PacketIntegrator {
            strides_[l],
            neighbor_deviation[l],
            longest_step[l],
-           static_cast<std::uint8_t>(bits(proved_) >> l & 1)};
+           static_cast<std::uint8_t>(bits(proved_) >> l & 1),
+           failed_[l] ? pellucid_left : pellucid_followed};
       const PellucidRay& ray = job_.rays[first_ + l];
       trace_.find_half(l, ray.begin, ray.end, r);
     }
@@ -451,7 +452,7 @@ class PacketIntegrator {
     surfaces_.cross(affordable, rising);
   }
 
-  /// The lanes' rays are not for binary32.
+  /// Leaves the lanes' rays.
   void fail(M lanes) noexcept {
     if (none(lanes)) return;
     failed_ = failed_ | lanes;
@@ -509,7 +510,7 @@ class PacketIntegrator {
     const F flat = fold_.budget.allowance(length, F(0), transparency),
             all = fold_.budget.allowance(length, F(1), transparency);
     HandedBack<N> handed_back;
-    unsigned not_proved = 0, with_panels = 0;
+    unsigned not_proved = 0, with_panels = 0, given_up = 0;
     for (int l = 0; l < N; ++l) {
       if ((bits(lanes) >> l & 1) == 0) continue;
       PellucidCell cell;
@@ -525,10 +526,16 @@ class PacketIntegrator {
       cell.allowance_per_opacity = static_cast<double>(all[l] - flat[l]);
       PellucidCellResult result;
       job_.integrate_cell(job_.context, first_ + l, &cell, &result);
+      if (result.status == pellucid_left) {
+        given_up |= 1u << l;
+        continue;
+      }
       handed_back.set(l, result);
       if (result.proved == 0) not_proved |= 1u << l;
       if (result.panels != 0) with_panels |= 1u << l;
     }
+    fail(M::from_bits(given_up));
+    lanes = lanes & pending_;
     fold_.add(handed_back, select(lanes, length, F(0)));
     proved_ = proved_ & !M::from_bits(not_proved);
     pieces_ += select(lanes, I(1), I(0));
@@ -566,7 +573,7 @@ class PacketIntegrator {
                     ///< world length
   I code_;
   F close_{0};       ///< what its data may be off by, beside isosurfaces
-  M failed_{false};  ///< whether a lane's ray is for the general path
+  M failed_{false};  ///< whether a lane's ray is left
 
   SampledErrors<F> sampled_;
   Like like_;

@@ -70,7 +70,7 @@ class SurfacePacket {
       r.optical_depth = -__builtin_log1p(-r.opacity);
       // Costs are added in float; folding in double costs next to nothing.
       r.error = static_cast<double>(error_[l]) * (1 + 1e-5) + 1e-12 * job_.largest_color;
-      if (!(r.error <= job_.tolerance)) r.error = std::numeric_limits<double>::infinity();
+      if (failed_[l] || !(r.error <= job_.tolerance)) r.status = pellucid_left;
     }
   }
 
@@ -173,7 +173,7 @@ class SurfacePacket {
   /// The lanes' rays are not for binary32.
   void fail(M lanes) noexcept {
     if (none(lanes)) return;
-    error_ = select(lanes, F(std::numeric_limits<float>::infinity()), error_);
+    failed_ = failed_ | lanes;
     end_rays(lanes);
   }
   void end_rays(M lanes) noexcept {
@@ -206,6 +206,7 @@ class SurfacePacket {
 
   FrontToBackCompositor<D> fold_;
   F error_{0};
+  M failed_{false};  ///< whether a lane's ray is left
   PellucidHalfOpacity half_[N];
   std::int32_t cells_seen_[N] = {};
   I skipped_{0}, met_{0};

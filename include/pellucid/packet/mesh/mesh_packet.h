@@ -90,8 +90,7 @@ class MeshPacket {
       r = light_of_lane(all, l);
       r.error = error[l];
       r.cells = r.evaluations = cells_[l];
-      // Nothing is known of those that were not followed.
-      if (march_.rays.crowded[l]) r.error = std::numeric_limits<double>::infinity();
+      if (march_.rays.crowded[l]) r.status = pellucid_left;
       r.closed = pieces_[l];
       r.in_double = in_double_[l];
       r.proved = 1;

@@ -59,8 +59,7 @@ class MultivariateMeshPacket {
       r = light_of_lane(all, l);
       r.error = march_.rays.meets[l] ? error[l] : 0;
       r.cells = r.evaluations = cells_[l];
-      // Nothing is known of those that were not followed.
-      if (march_.rays.crowded[l]) r.error = std::numeric_limits<double>::infinity();
+      if (march_.rays.crowded[l]) r.status = pellucid_left;
       const std::int32_t panels = lanes_.panels[l], nodes = lanes_.nodes[l];
       r.closed = panels - nodes;
       r.panels = nodes;

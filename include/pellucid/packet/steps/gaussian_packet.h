@@ -106,8 +106,8 @@ class GaussianPacket {
       for (int c = 0; c < 3; ++c) r.radiance[c] = field[c][l];
       r.opacity = field[3][l];
       r.optical_depth = field[4][l];
-      r.error =
-          (bits(given_up_) >> l & 1) != 0 ? std::numeric_limits<double>::infinity() : field[5][l];
+      r.error = field[5][l];
+      if ((bits(given_up_) >> l & 1) != 0) r.status = pellucid_left;
       r.cells = r.evaluations = 4 * looks[l];
       r.skipped = skipped[l];
       r.strides = taken[l];
