@@ -306,8 +306,10 @@ void check_method(const Scene& scene) {
   for (const Layer& layer : scene.layers) {
     if (!layer.visible || layer.projection) continue;
     const auto* const mesh = std::get_if<MeshContent>(&layer.content);
-    const bool multivariate = mesh != nullptr
-                                  ? mesh->multivariate() != nullptr
+    const auto* const own = std::get_if<SourceContent>(&layer.content);
+    const bool multivariate = mesh != nullptr ? mesh->multivariate() != nullptr
+                              : own != nullptr
+                                  ? own->univariate() == nullptr
                                   : std::holds_alternative<ChannelsContent>(layer.content);
     all_meshes = all_meshes && mesh != nullptr;
     any_gaussians = any_gaussians || multivariate;

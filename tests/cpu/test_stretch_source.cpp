@@ -447,9 +447,9 @@ TEST(StretchSources, AreNotForEverything) {
             "layer \"window\": the projection maximum is of grids and meshes, but the layer has a "
             "stretch "
             "source; leave it out");
-  EXPECT_EQ(one([](Scene& s) { s.integration.method = Method::midpoint; }),
-            "integration: the method midpoint is for grids and meshes, but the scene has a stretch "
-            "source; take exact");
+  EXPECT_EQ(one([](Scene& s) { s.integration.method = Method::homogeneous; }),
+            "integration: the method homogeneous is for the cells of a mesh, but the scene has "
+            "other data; take midpoint, trapezoid or linear there");
   EXPECT_EQ(
       one([](Scene& s) { std::get<SourceContent>(s.layers[0].content).source = nullptr; }),
       "layer \"window\": a source and a transfer function are needed; set both before rendering");

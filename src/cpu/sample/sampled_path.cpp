@@ -60,6 +60,10 @@ Interval<double> range_of(const Layer& layer) {
     const auto& data = mesh->mesh->statistics(0);
     return {data.minimum, data.maximum};
   }
+  if (const auto* const own = std::get_if<SourceContent>(&layer.content)) {
+    const StretchSource::Variable& variable = own->source->description().variables[0];
+    return {variable.minimum, variable.maximum};
+  }
   const VolumeStatistics& data = grid_of(layer)->statistics();
   return {data.minimum, data.maximum};
 }
