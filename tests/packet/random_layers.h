@@ -101,6 +101,34 @@ class RandomLayers {
         function(2)}};
   }
 
+  /// Gaussians of two variables, on a grid or a mesh, now and then with a table beside.
+  Layer several_variables() {
+    Layer result = scenes::gaussians();
+    if (unit() < 0.25) return result;
+    std::vector<GaussianPrimitive> primitives;
+    for (int i = 0; i < 1 + static_cast<int>(4 * unit()); ++i) {
+      GaussianPrimitive& one = primitives.emplace_back();
+      one.channels = {0, 1};
+      one.center = {unit(), unit()};
+      one.matrix = {{1 / (0.05 + 0.4 * unit()), 3 * both()}, {0, 1 / (0.05 + 0.4 * unit())}};
+      one.extinction = 4 * unit();
+      one.color = random_color(random_);
+    }
+    const auto function =
+        std::make_shared<const MultivariateTransferFunction>(2, std::move(primitives));
+    if (unit() < 0.7) {
+      std::get<ChannelsContent>(result.content).transfer_function = function;
+      return result;
+    }
+    const auto pointer = scenes::make_mesh(scenes::box_of_cubes(3));
+    const auto at = [&](const char* name, double turn) {
+      return scenes::at_points(*pointer, name, [=](const Vec3<double>& p) {
+        return scenes::wave(p.x, turn * p.y, p.z - turn * p.x);
+      });
+    };
+    return {MeshContent{scenes::on_mesh(pointer, {at("one", 1), at("other", -0.6)}), function}};
+  }
+
   Layer layer(bool has_others) {
     const double kind = unit();
     Layer result = scenes::labels();
@@ -119,7 +147,8 @@ class RandomLayers {
       result = mesh();
       has_gradient = true;
     } else if (kind < 0.85) {
-      result = scenes::gaussians();
+      result = several_variables();
+      if (unit() < 0.6) result.shading = random_shading(random_);
     }
     if (has_gradient) {
       if (unit() < 0.5) result.shading = random_shading(random_);

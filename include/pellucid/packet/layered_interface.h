@@ -38,7 +38,9 @@ struct PellucidLayerRow {
   };
   // Fields of a part: the number of the function, PartKind, what the data may be off by; their
   // Bernstein coefficients, those of the gradient in the world, and of its magnitude. Of a cell its
-  // place in the grid, and those of entry and exit in it.
+  // place in the grid, and those of entry and exit in it. Of layers of several variables the data
+  // are elsewhere (PellucidLayeredJob::curves); here are the bits of the primitives that may
+  // matter.
   enum Part : int {
     function,
     part_kind,
@@ -50,7 +52,9 @@ struct PellucidLayerRow {
     place = data,
     entry_in_cell = place + 4,
     exit_in_cell = entry_in_cell + 3,
-    cell_fields = exit_in_cell + 5
+    primitives_of_cell = exit_in_cell + 3,
+    cell_fields = primitives_of_cell + 2,
+    primitives_of_curve = data
   };
   enum PartKind : int {
     curve,
@@ -60,6 +64,11 @@ struct PellucidLayerRow {
   static constexpr int most_lanes = 16;
   static constexpr int of_a_ray = 16;  ///< rows, one after the other, and then the first again
   static constexpr int most_layers = 8, most_marks = 16;
+  /// Returns how many numbers PellucidLayeredJob::curves has of a row: the Bernstein coefficients
+  /// of each variable, and then what each may be off by, filled up to records of four.
+  static constexpr int curve_fields(int variables) {
+    return 4 * variables + (variables + 3) / 4 * 4;
+  }
 };
 
 /// Rays through several layers, one in each lane, and what lies ahead of them. A packet is begun
@@ -75,8 +84,12 @@ struct PellucidLayeredJob {
   std::int32_t layers;
   const void* const* functions;  ///< BinnedTransfer of each
   const void* const* light;      ///< PacketLight of each layer; null: unlit
-  /// The grid of each layer whose cells parts name; null: they name none.
+  /// The grids of the variables of each layer whose cells parts name; null: they name none.
   const PellucidPacketJob* const* grid;
+  /// LaneMixture of each layer of several variables; else null.
+  const void* const* mixture;
+  /// Of these layers, the data of parts that are no cells: [lane][row], of each variable.
+  const float* const* curves;
   double largest_color, largest_extinction;
   std::int32_t depth;  ///< whether results are to say where half of the opacity is
 

@@ -49,16 +49,17 @@ template <class T>
 PELLUCID_HD Rgb<T> color_of_every_other(const PanelNodes<7, T>& nodes) noexcept {
   // Interpolatory on the nodes 0, 2, 4, 6: (1/3 - b²)/(a² - b²) of the half for the outer ones,
   // with the nodes ±a, ±b on [-1, 1].
-  constexpr T outer = T(0.11453883139457109), inner = T(0.3854611686054289);
+  constexpr scalar_t<T> outer = scalar_t<T>(0.11453883139457109),
+                        inner = scalar_t<T>(0.3854611686054289);
   T sum = T(0);
   Rgb<T> color{};
   for (int j = 0; j < 7; j += 2) {
     const T weight =
-        (j == 0 || j == 6 ? outer : inner) * nodes.rate[j] * exp(-max(nodes.depth[j], T(0)));
+        T(j == 0 || j == 6 ? outer : inner) * nodes.rate[j] * exp(-max(nodes.depth[j], T(0)));
     sum += weight;
     color += weight * nodes.material[j].color;
   }
-  return (T(1) / (sum > T(0) ? sum : T(1))) * color;
+  return (T(1) / select(sum > T(0), sum, T(1))) * color;
 }
 
 /// Integrates the layers on a panel; each of them is a part of its own stretch.

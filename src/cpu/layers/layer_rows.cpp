@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 
 #include "grid/grid_light.h"
 #include "layer_merge.h"
@@ -61,6 +63,25 @@ bool write_gradient(const LayerLook& look, const LayerStretch& stretch, Interval
   return has_moderate_square(largest);
 }
 
+void write_primitives(PrimitiveSet set, float* to) {
+  const std::uint32_t word[2] = {static_cast<std::uint32_t>(set.bits),
+                                 static_cast<std::uint32_t>(set.bits >> 32)};
+  std::memcpy(to, word, sizeof(word));
+}
+
+/// Writes the data of several variables (PellucidLayeredJob::curves). Returns false if they are not
+/// for lanes.
+bool write_curves(int variables, const LayerStretch& stretch, Interval<double> range, float* to) {
+  for (int c = 0; c < variables; ++c) {
+    const CubicBernstein<double> data = channel_on(stretch, c, range);
+    const float size = largest_size(data);
+    if (!(size < 1e30f)) return false;
+    for (int b = 0; b < 4; ++b) to[4 * c + b] = static_cast<float>(data.b[b]);
+    to[4 * variables + c] = 8 * unit * size + single_above(stretch.value_error[c]);
+  }
+  return true;
+}
+
 }  // namespace
 
 float single_above(double x) {
@@ -68,14 +89,22 @@ float single_above(double x) {
 }
 
 bool write_part(const SeenLayer& layer, int number, const LayerStretch& stretch,
-                Interval<double> range, float* to, bool& absorbs) {
+                Interval<double> range, float* to, float* curves, bool& absorbs) {
   if (!layer.in_lanes) return false;
   to[Row::function] = static_cast<float>(layer.first_function + number);
   if (stretch.by_cell) {
     write_cell(stretch.cell, range, to);
+    if (layer.mixture) write_primitives(stretch.primitives, to + Row::primitives_of_cell);
     return true;
   }
   const LayerLook& look = layer.source->look();
+  if (layer.mixture) {
+    to[Row::part_kind] = Row::curve;
+    to[Row::rounding] = 0;
+    write_primitives(stretch.primitives, to + Row::primitives_of_curve);
+    return write_curves(layer.mixture->channels, stretch, range, curves) &&
+           (!look.is_lit() || write_gradient(look, stretch, range, to));
+  }
   const CubicBernstein<double> data = channel_on(stretch, 0, range);
   const double least = data.hull_min(), most = data.hull_max();
   const bool is_constant = least == most && !(stretch.value_error[0] > 0);

@@ -7,6 +7,7 @@
 #include "layer_stream.h"
 #include "pellucid/geometry/ray.h"
 #include "pellucid/packet/layered_interface.h"
+#include "pellucid/packet/layers/lane_mixture.h"
 #include "pellucid/packet/light.h"
 #include "pellucid/scene/binned_transfer_storage.h"
 
@@ -21,16 +22,18 @@ struct SeenLayer {
   std::optional<BinnedTransferStorage> factor;
   std::optional<PacketLight> light;
   std::vector<const BinnedTransfer*> function;  ///< each of its functions
-  PellucidPacketJob grid{};                     ///< of the cells that its stretches tell
+  std::vector<PellucidPacketJob> grid;  ///< of the cells that its stretches tell, by variable
+  std::vector<Gaussian<float>> gaussians;
+  std::optional<LaneMixture> mixture;  ///< of these; none: of one variable
 };
 
 /// Returns a bound on x >= 0 in binary32.
 float single_above(double x);
 
 /// Writes the fields of a layer's part of a row (PellucidLayerRow::Part): of a stretch of the layer
-/// with its function of this number, the range. `absorbs`: set to false where it does not. Returns
-/// false if it is not for lanes.
+/// with its function of this number, the range. `curves`: of a layer of several variables, for
+/// their data. `absorbs`: set to false where it does not. Returns false if it is not for lanes.
 bool write_part(const SeenLayer& layer, int number, const LayerStretch& stretch,
-                Interval<double> range, float* to, bool& absorbs);
+                Interval<double> range, float* to, float* curves, bool& absorbs);
 
 }  // namespace pellucid

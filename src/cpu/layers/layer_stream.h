@@ -50,8 +50,12 @@ class LayerSource {
   /// Returns its points, for methods that sample: those of its stretches, unless the data tell them
   /// in less time.
   virtual std::unique_ptr<LayerPoints> sampled_points() const;
-  /// Returns the uniform grid whose cells its stretches can tell; null: none.
-  virtual const Volume* cells() const noexcept { return nullptr; }
+  /// Returns the uniform grid whose cells its stretches can tell, with a variable's values; null:
+  /// none.
+  virtual const Volume* cells(int variable = 0) const noexcept {
+    static_cast<void>(variable);
+    return nullptr;
+  }
   const LayerLook& look() const noexcept { return look_; }
   double most_extinction() const noexcept { return most_extinction_; }
 

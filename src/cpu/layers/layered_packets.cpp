@@ -15,6 +15,7 @@
 #include "medium_parts.h"
 #include "packet_setup.h"
 #include "pellucid/render/multivariate_integrator.h"
+#include "sample/sampled_multivariate_storage.h"
 
 namespace pellucid {
 namespace {
@@ -37,6 +38,25 @@ bool suits_lanes(const MultivariateTransfer<double>& function) {
   return largest == 0 || is_moderate(largest);
 }
 
+/// Whether a function is a sum of Gaussians of several variables whose places, K (v - c), binary32
+/// knows.
+bool is_mixture(const LayerSource& source) {
+  if (source.functions().size() != 1) return false;
+  const MultivariateTransfer<double>& function = source.functions()[0];
+  if (function.gaussians.count == 0 || function.tables > 0) return false;
+  const auto suits = [](double x) { return x == 0 || is_moderate(std::fabs(x)); };
+  for (int i = 0; i < function.gaussians.count; ++i) {
+    const Gaussian<double>& g = function.gaussians.primitive[i];
+    for (int c = 0; c < g.channels; ++c) {
+      if (!suits(g.center[c])) return false;
+      for (int row = 0; row < g.rows; ++row) {
+        if (!suits(g.matrix[row][c])) return false;
+      }
+    }
+  }
+  return true;
+}
+
 /// Whether packets know the factor of a layer's extinction, if it has one.
 bool has_known_factor(const LayerLook& look) {
   if (look.extinction_factor() == nullptr) return true;
@@ -45,6 +65,11 @@ bool has_known_factor(const LayerLook& look) {
   return content != nullptr && factor && look.value_factor() == nullptr &&
          suits_single(*look.extinction_factor(), factor->largest_factor(),
                       steepest_gradient(look, *content->volume));
+}
+
+/// Returns the variable whose gradient lights a layer.
+int lit_variable(const LayerLook& look) {
+  return look.layer().shading ? look.layer().shading->channel : 0;
 }
 
 using Kernel = void (*)(PellucidLayeredJob*);
@@ -120,12 +145,14 @@ LayeredPackets::LayeredPackets(const std::vector<ClippedLayer>& layers,
   for (const BinnedTransferStorage& function : functions_) function_.push_back(&function.view());
   for (const SeenLayer& one : seen_) {
     light_.push_back(one.light ? &*one.light : nullptr);
-    grid_.push_back(one.in_lanes && one.source->cells() != nullptr ? &one.grid : nullptr);
+    grid_.push_back(one.in_lanes && one.source->cells() != nullptr ? one.grid.data() : nullptr);
+    mixture_.push_back(one.mixture ? &*one.mixture : nullptr);
   }
   job_.layers = static_cast<std::int32_t>(layers.size());
   job_.functions = function_.data();
   job_.light = light_.data();
   job_.grid = grid_.data();
+  job_.mixture = mixture_.data();
   job_.largest_color = std::max(wanted.largest_color, 1.0);
   // A surface is opaque whatever its length.
   job_.largest_extinction = marks_ > 0 ? 1e30 : std::min(largest_extinction * 1.0001, 1e30);
@@ -141,26 +168,40 @@ void LayeredPackets::add(const ClippedLayer& layer, const PacketLight* lights) {
   const LayerLook& look = one.source->look();
   one.first_mark = marks_;
   if (look.has_surfaces()) marks_ += static_cast<int>(look.isosurfaces().size()) + 1;
+  const bool is_sum = is_mixture(*one.source);
   one.in_lanes = has_known_factor(look) && one.source->most_extinction() <= 1e12 &&
-                 std::ranges::all_of(one.source->functions(),
-                                     [](const auto& function) { return suits_lanes(function); });
+                 (is_sum || std::ranges::all_of(one.source->functions(), [](const auto& function) {
+                    return suits_lanes(function);
+                  }));
   const Reflection<double>* const r = look.reflection();
   if (r != nullptr) {
     // Where a light turns its edge to the direction half-way to a point light is no place that
     // packets know.
-    const Volume* const cells = one.source->cells();
+    const Volume* const cells = one.source->cells(lit_variable(look));
     one.in_lanes = one.in_lanes && has_moderate_square(std::sqrt(r->flat_square)) &&
                    (cells == nullptr || has_moderate_square(steepest_gradient(look, *cells))) &&
                    has_moderate_square(static_cast<double>(lights->farthest)) &&
                    !(lights->points > 0 && has_kink_in_highlight(in_single(*r)));
   }
   if (!one.in_lanes) return;
-  for (const MultivariateTransfer<double>& function : one.source->functions()) {
-    const PiecewiseLinear<double>& table = function.table[0].table;
-    functions_.emplace_back(table, largest_of(table));
-    one.function.push_back(&functions_.back().view());
+  int variables = 1;
+  if (is_sum) {
+    const MultivariateTransfer<double>& function = one.source->functions()[0];
+    for (int i = 0; i < function.gaussians.count; ++i) {
+      one.gaussians.push_back(rounded_to_binary32(function.gaussians.primitive[i]));
+    }
+    variables = function.channels;
+    one.mixture = {{one.gaussians.data(), function.gaussians.count}, variables, lit_variable(look)};
+  } else {
+    for (const MultivariateTransfer<double>& function : one.source->functions()) {
+      const PiecewiseLinear<double>& table = function.table[0].table;
+      functions_.emplace_back(table, largest_of(table));
+      one.function.push_back(&functions_.back().view());
+    }
   }
-  if (one.source->cells() != nullptr) set_grid(*one.source->cells(), one.grid);
+  for (int c = 0; c < variables && one.source->cells(c) != nullptr; ++c) {
+    set_grid(*one.source->cells(c), one.grid.emplace_back());
+  }
   if (!look.is_lit()) return;
   PacketLight& light = one.light.emplace(r != nullptr ? *lights : no_light());
   if (r != nullptr) light.reflection = in_single(*r);
@@ -185,12 +226,19 @@ class LayeredPackets::Packet {
         layers_(of.layers_.size()),
         head_(lanes_ * Row::of_a_ray * Row::head_fields),
         part_(layers_ * Row::most_lanes * Row::of_a_ray * Row::part_fields),
+        curves_(layers_),
         row_(lanes_ * Row::of_a_ray),
         again_(of.layers_, of.lights_, job_.largest_color, false),
         media_(again_.sources(), of.lights_) {
     for (std::size_t l = 0; l < lanes_; ++l) {
       merge_.emplace_back(of.layers_, of.lights_, job_.largest_color, true);
     }
+    for (std::size_t k = 0; k < layers_; ++k) {
+      if (!of.seen_[k].mixture) continue;
+      curves_[k].resize(lanes_ * Row::of_a_ray * curve_fields(k));
+      curve_[k] = curves_[k].data();
+    }
+    job_.curves = curve_.data();
     job_.state = state_.get();
     job_.head = head_.data();
     job_.part = part_.data();
@@ -271,6 +319,10 @@ class LayeredPackets::Packet {
     return of_.marks_ > 0 ? 1e-6 * (inside_[lane].end - inside_[lane].begin) : 0;
   }
 
+  /// Numbers that a row has of a layer of several variables.
+  std::size_t curve_fields(std::size_t layer) const {
+    return static_cast<std::size_t>(Row::curve_fields(of_.seen_[layer].mixture->channels));
+  }
   std::size_t slot(std::size_t lane, std::int32_t row) const {
     return lane * Row::of_a_ray + static_cast<std::size_t>(row & (Row::of_a_ray - 1));
   }
@@ -338,8 +390,9 @@ class LayeredPackets::Packet {
       if (merge.key()[k] < 0) continue;
       float* const to = &part_[(k * Row::most_lanes * Row::of_a_ray + at) * Row::part_fields];
       bool absorbs = true;
-      for_lanes =
-          write_part(of_.seen_[k], merge.key()[k], *merge.stretches()[k], part.range, to, absorbs);
+      float* const curves = of_.seen_[k].mixture ? &curves_[k][at * curve_fields(k)] : nullptr;
+      for_lanes = write_part(of_.seen_[k], merge.key()[k], *merge.stretches()[k], part.range, to,
+                             curves, absorbs);
       if (absorbs) present |= 1 << k;
     }
     if (for_lanes && present == 0) {
@@ -418,6 +471,8 @@ class LayeredPackets::Packet {
   AlignedBytes state_;
   std::size_t lanes_, layers_, used_ = 0;
   std::vector<float> head_, part_;
+  std::vector<std::vector<float>> curves_;  ///< of layers of several variables
+  std::array<const float*, Row::most_layers> curve_{};
   std::vector<MergedPart> row_;   ///< what rows were made from
   std::deque<LayerMerge> merge_;  ///< of each lane
   LayerMerge again_;              ///< of what lanes are not for

@@ -57,7 +57,7 @@ class LayeredPackets {
   int marks_ = 0;
   PellucidLayeredJob job_{};  ///< what all rays have in common
   // As the job sees them.
-  std::vector<const void*> function_, light_;
+  std::vector<const void*> function_, light_, mixture_;
   std::vector<const PellucidPacketJob*> grid_;
 };
 

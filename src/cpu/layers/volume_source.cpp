@@ -109,7 +109,7 @@ class VolumeSource : public LayerSource {
 
   std::unique_ptr<LayerStream> stream(bool by_cells) const override;
   std::unique_ptr<LayerPoints> sampled_points() const override;
-  const Volume* cells() const noexcept override {
+  const Volume* cells(int /*variable*/) const noexcept override {
     return in_cells_ ? content_.volume.get() : nullptr;
   }
 
@@ -285,7 +285,7 @@ class VolumeStream : public GridStream {
 
 std::unique_ptr<LayerStream> VolumeSource::stream(bool by_cells) const {
   return std::make_unique<VolumeStream>(*this, *content_.volume, records_, classes_.data(),
-                                        by_cells && cells() != nullptr);
+                                        by_cells && in_cells_);
 }
 
 /// Points of a volume, of whose functions a mask may choose.
@@ -329,6 +329,11 @@ class ChannelsSource : public LayerSource {
         blocks_(storage_.view()),
         gradients_(look(), [&](int c) -> const Volume& { return *channels_[c].volume; }) {
     functions_.push_back(std::get<ChannelsContent>(task.layer.content).transfer_function->view());
+    in_cells_ = !look().has_surfaces() && is_uniform(channels_.grid());
+    for (int c = 0; c < channels_.count(); ++c) {
+      in_cells_ = in_cells_ && fits_single(*channels_[c].volume) &&
+                  suits_lanes(*channels_[c].volume, most_extinction());
+    }
     if (look().isosurfaces().empty()) return;
     const auto count = static_cast<std::size_t>(blocks_.records.count());
     classes_.assign(blocks_.classes.block, blocks_.classes.block + count);
@@ -340,6 +345,9 @@ class ChannelsSource : public LayerSource {
 
   std::unique_ptr<LayerStream> stream(bool by_cells) const override;
   std::unique_ptr<LayerPoints> sampled_points() const override;
+  const Volume* cells(int variable) const noexcept override {
+    return in_cells_ ? channels_[variable].volume.get() : nullptr;
+  }
 
   const MultichannelGrid& grid() const { return grid_; }
   const MultivariateBlocks& blocks() const { return blocks_; }
@@ -355,14 +363,16 @@ class ChannelsSource : public LayerSource {
   MultivariateBlocks blocks_;
   std::vector<BlockClass> classes_;  ///< with those of isosurfaces; empty: those of blocks_
   GridGradients gradients_;
+  bool in_cells_ = false;
 };
 
 class ChannelsStream : public GridStream {
  public:
-  ChannelsStream(const ChannelsSource& source, const Volume& volume)
+  ChannelsStream(const ChannelsSource& source, const Volume& volume, bool by_cells)
       : GridStream(volume, source.grid().axis, source.blocks().records, source.classes(),
                    source.look().slices(), true),
-        source_(source) {}
+        source_(source),
+        by_cells_(by_cells) {}
 
   bool next(LayerStretch& stretch) override {
     StructuredWalk<double>::Step step;
@@ -377,10 +387,17 @@ class ChannelsStream : public GridStream {
         stretch.function = -1;
         return true;
       }
+      stretch.primitives = source_.blocks().primitives[block];
+      stretch.by_cell =
+          by_cells_ && !source_.gradients().is_doubtful(step, source_.grid().axis, planes());
+      if (stretch.by_cell) {
+        stretch.function = 0;
+        stretch.cell = step;
+        return true;
+      }
       MultivariateSpan<double> span;
       if (!make_multivariate_span(source_.grid(), step, span)) continue;
       stretch.function = 0;
-      stretch.primitives = source_.blocks().primitives[block];
       std::copy_n(span.data, source_.grid().channels, stretch.data);
       source_.gradients().fill(step, source_.grid().axis, planes(), stretch);
       if (const ChannelTransferFunction* const factor = source_.look().value_factor()) {
@@ -393,10 +410,11 @@ class ChannelsStream : public GridStream {
 
  private:
   const ChannelsSource& source_;
+  bool by_cells_;
 };
 
-std::unique_ptr<LayerStream> ChannelsSource::stream(bool /*by_cells*/) const {
-  return std::make_unique<ChannelsStream>(*this, channels_.grid());
+std::unique_ptr<LayerStream> ChannelsSource::stream(bool by_cells) const {
+  return std::make_unique<ChannelsStream>(*this, channels_.grid(), by_cells && in_cells_);
 }
 
 class ChannelsPoints : public GridPoints {

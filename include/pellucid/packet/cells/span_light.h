@@ -132,14 +132,20 @@ class SpanLight {
   template <class Transfer>
   [[gnu::noinline]] LightOfPiece<N> measure(const SpanPiece<float, N>& piece, F from, F to,
                                             const Transfer& transfer) const noexcept {
+    // The range of the table's colors within the piece.
+    const F change = min(piece.spread.range, piece.spread.slope * range_of(piece.seen));
+    return measure(change, piece.spread.kinks, piece.seen.depth, F(transfer.largest_color), from,
+                   to);
+  }
+  /// The same of colors up to `largest` that differ by `change` and are off by `kinks`.
+  [[gnu::noinline]] LightOfPiece<N> measure(F change, F kinks, F depth, F largest, F from,
+                                            F to) const noexcept {
     LightOfPiece<N> result;
     result.along = along(from, to);
     const Bounds<F> squares = result.along.square();
     const LitBounds<F> bounds =
         light_bounds(light_.reflection, light_.light, light_.lights, result.along, squares);
-    // The range of the colors: of the table's within the piece, of light's factors and addends.
-    const F change = min(piece.spread.range, piece.spread.slope * range_of(piece.seen));
-    const F largest = F(transfer.largest_color);
+    // The range of the colors: of those without light, of light's factors and addends.
     const F brightest = largest_component(bounds.upper.factor);
     const F range = brightest * change +
                     largest * largest_component(bounds.upper.factor - bounds.lower.factor) +
@@ -148,16 +154,16 @@ class SpanLight {
     // The direction to a point light has its distance for a denominator, as the normal |g|.
     const F turns = (squares.upper + flat) / max(squares.lower + flat, F(smallest_normal<float>)) *
                     turns_of_distance(result.along);
-    const NodeDeviations<N> nodes(range, turns, bounds.sharpness, piece.seen.depth);
+    const NodeDeviations<N> nodes(range, turns, bounds.sharpness, depth);
     result.by_three = nodes.by_three;
     result.by_six = nodes.by_six;
     result.range = range;
     result.turns = turns;
     result.sharpness = bounds.sharpness;
     result.bounds = bounds;
-    result.color_error = brightest * piece.spread.kinks +
-                         color_rounding(light_.reflection, light_.light, light_.lights, squares,
-                                        largest, F(gradient_rounding<float>));
+    result.color_error =
+        brightest * kinks + color_rounding(light_.reflection, light_.light, light_.lights, squares,
+                                           largest, F(gradient_rounding<float>));
     if (light_.points > 0) {
       result.color_error += place_doubt(light_.reflection, light_.light, light_.lights,
                                         result.along, largest, F(place_rounding(light_)));
@@ -172,6 +178,11 @@ class SpanLight {
     return result;
   }
 
+  /// Returns what light makes of colors at u of a piece.
+  Lit<F> lit_at(const LightOfPiece<N>& of, F u) const noexcept {
+    return light_up(light_.reflection, light_.light, light_.lights, of.along.at(u),
+                    of.along.position(u), to_eye_);
+  }
   /// Returns extinction and color at u of a piece. `known`: as of color_at().
   template <class Transfer>
   Material<F> material(const LightOfPiece<N>& of, const SpanPiece<float, N>& piece,
@@ -180,9 +191,7 @@ class SpanLight {
     const F value = evaluate(piece.parts.front, u);
     const Rgb<F> unlit = color_at(
         transfer, clamp(value, piece.seen.color_lower, piece.seen.color_upper), lanes, known);
-    const Lit<F> lit = light_up(light_.reflection, light_.light, light_.lights, of.along.at(u),
-                                of.along.position(u), to_eye_);
-    return {extinction(span, value, u), lit.apply(unlit)};
+    return {extinction(span, value, u), lit_at(of, u).apply(unlit)};
   }
 
   /// Returns the color of a piece by Nodes Gauss nodes.

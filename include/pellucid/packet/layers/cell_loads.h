@@ -10,7 +10,8 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// Loads cells of a grid, one in each lane. Its values are of a type that binary32 holds.
+/// Loads cells of a grid with one or several variables, one in each lane. Its values are of types
+/// that binary32 holds.
 template <int N>
 class CellLoads {
  public:
@@ -24,21 +25,23 @@ class CellLoads {
     Vec3<F> entry, exit;  ///< places in the cell, [0,1]³
   };
 
-  CellLoads(const PellucidPacketJob& job, const PacketLight& light) noexcept
-      : grid_(job), gradients_(grid_, light) {}
+  /// `jobs`: of each variable; must outlive the object. `lit`: that whose gradient is needed.
+  CellLoads(const PellucidPacketJob* jobs, int lit, const PacketLight& light) noexcept
+      : jobs_(jobs), grid_(jobs[lit]), gradients_(grid_, light) {}
   // The gradients refer to the grid.
   CellLoads(const CellLoads&) = delete;
   CellLoads& operator=(const CellLoads&) = delete;
 
-  /// The data along the lanes' ways.
-  CellCubic<F> data(M lanes, const Ways& ways) const noexcept {
+  /// The data of a variable along the lanes' ways.
+  CellCubic<F> data(M lanes, const Ways& ways, int variable = 0) const noexcept {
     const auto [cell] = within(lanes, ways);
-    const ExactCorners<N> corners_of(grid_, cell);
+    const PacketGrid grid(jobs_[variable]);
+    const ExactCorners<N> corners_of(grid, cell);
     CellCorners<F> corners;
-    with_value_type(grid_.type, [&](auto value) noexcept {
+    with_value_type(grid.type, [&](auto value) noexcept {
       using Value = decltype(value);
       if constexpr (std::is_same_v<Value, float> || sizeof(Value) <= 2) {
-        corners = load<Value>(corners_of);
+        corners = load<Value>(grid, corners_of);
       }
     });
     F least = corners.value[0], most = least;
@@ -73,10 +76,12 @@ class CellLoads {
     return result;
   }
   template <class Value>
-  [[gnu::noinline]] CellCorners<F> load(const ExactCorners<N>& of) const noexcept {
-    return of.in_single(static_cast<const Value*>(grid_.data));
+  [[gnu::noinline]] static CellCorners<F> load(const PacketGrid& grid,
+                                               const ExactCorners<N>& of) noexcept {
+    return of.in_single(static_cast<const Value*>(grid.data));
   }
 
+  const PellucidPacketJob* jobs_;
   const PacketGrid grid_;
   GradientLoads<N> gradients_;
 };

@@ -5,10 +5,12 @@
 #include "pellucid/packet/cells/span_light.h"
 #include "pellucid/packet/layered_interface.h"
 #include "pellucid/packet/layers/cell_loads.h"
+#include "pellucid/packet/layers/lane_mixture.h"
 #include "pellucid/packet/layers/lane_transfers.h"
 #include "pellucid/packet/layers/piece_sum.h"
 #include "pellucid/packet/opacity_trace.h"
 #include "pellucid/packet/packet_fold.h"
+#include "pellucid/segment/lit_panel.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
@@ -22,7 +24,10 @@ namespace pellucid {
 ///   Σ τ_l C_l / Σ τ_l,
 ///
 /// of means weighted by extinction where no layer has light and that suffices, else by Gauss nodes
-/// (span_light.h). In binary32; what that is not good enough for waits for the caller.
+/// (span_light.h). Where a layer has Gaussians of several variables, depth and color are those of
+/// seven Gauss nodes, and what four of them make of it says how far they are off, as
+/// integrate_lit_panel() has it. In binary32; what that is not good enough for waits for the
+/// caller.
 template <int N>
 class LayeredPacket {
  public:
@@ -97,6 +102,8 @@ class LayeredPacket {
     LaneTransfers<N> transfers;
     SpanLanes<float, N> span;
     SpanPiece<float, N> piece;
+    const LaneMixture* mixture;  ///< null: one variable
+    MixtureLanes<N> gaussians;
     bool has_light;
     SpanLight<N> light;
     LightOfPiece<N> lit;
@@ -107,6 +114,7 @@ class LayeredPacket {
 
     Layer(const PellucidLayeredJob& job, int number, const Vec3<F>& to_eye) noexcept
         : transfers(job.functions),
+          mixture(static_cast<const LaneMixture*>(job.mixture[number])),
           has_light(job.light[number] != nullptr),
           light(has_light ? *static_cast<const PacketLight*>(job.light[number]) : no_light(),
                 to_eye),
@@ -114,7 +122,7 @@ class LayeredPacket {
       transfers.largest_color = static_cast<float>(job.largest_color);
       if (has_cells) {
         new (&cells) CellLoads<N>(
-            *job.grid[number],
+            job.grid[number], mixture != nullptr ? mixture->light_channel : 0,
             has_light ? *static_cast<const PacketLight*>(job.light[number]) : no_light());
       }
     }
@@ -189,11 +197,17 @@ class LayeredPacket {
           ways.entry[a] = part[Row::entry_in_cell + a];
           ways.exit[a] = part[Row::exit_in_cell + a];
         }
-        shown = load_cells(layer, in_cells, ways, part, waits) | (here & !in_cells);
+        shown = (layer.mixture != nullptr ? load_mixture(layer, in_cells, ways)
+                                          : load_cells(layer, in_cells, ways, part, waits)) |
+                (here & !in_cells);
         layer.present = layer.present & !(here & !shown);
         if (none(shown)) continue;
       }
-      begin(shown, part, layer);
+      if (layer.mixture != nullptr) {
+        begin_mixture(k, shown, shown & !in_cells, at);
+      } else {
+        begin(shown, part, layer);
+      }
       if (!layer.has_light) continue;
       if (any(here & !in_cells)) {
         if (layer.has_cells) load_records<Row::part_fields>(parts, at, part);
@@ -234,6 +248,45 @@ class LayeredPacket {
       waits = waits | jumps | (absorbs & !(F(2) * rounding < F(transfer.narrowest)));
     });
     return found;
+  }
+
+  /// Loads the data of cells in a layer of several variables. Returns the lanes that have any.
+  [[gnu::noinline]] M load_mixture(Layer& layer, M lanes,
+                                   const typename CellLoads<N>::Ways& ways) const noexcept {
+    MixtureLanes<N>& to = layer.gaussians;
+    M filled = lanes;
+    for (int c = 0; c < layer.mixture->channels; ++c) {
+      const CellCubic<F> cubic = layer.cells.data(lanes, ways, c);
+      filled = filled & !is_nan(cubic.data.b[0] + cubic.data.b[3]);
+      for (int b = 0; b < 4; ++b) {
+        to.data[c].b[b] = select(lanes, cubic.data.b[b], to.data[c].b[b]);
+      }
+      to.rounding[c] = select(lanes, cubic.rounding, to.rounding[c]);
+    }
+    return filled;
+  }
+
+  /// Begins a layer of several variables; `curves`: the lanes whose parts are no cells.
+  [[gnu::noinline]] void begin_mixture(int number, M lanes, M curves, I at) noexcept {
+    Layer& layer = layer_[number];
+    MixtureLanes<N>& to = layer.gaussians;
+    // Bits in the place of floats, in records of four.
+    const auto* const words = reinterpret_cast<const std::int32_t*>(
+        job_->part + number * Row::most_lanes * Row::of_a_ray * Row::part_fields);
+    const I field = select(curves, I(Row::primitives_of_curve), I(Row::primitives_of_cell));
+    const I word = at * I(Row::part_fields) + field;
+    to.set.low = select(lanes, gather(words, word), to.set.low);
+    to.set.high = select(lanes, gather(words, word + I(1)), to.set.high);
+    if (none(curves)) return;
+    const int variables = layer.mixture->channels;
+    const I first = at * I(Row::curve_fields(variables) / 4);
+    for (int c = 0; c < variables; ++c) {
+      F b[4], off[4];
+      load_records<4>(job_->curves[number], first + I(c), b);
+      load_records<4>(job_->curves[number], first + I(variables + c / 4), off);
+      for (int k = 0; k < 4; ++k) to.data[c].b[k] = select(curves, b[k], to.data[c].b[k]);
+      to.rounding[c] = select(curves, off[c % 4], to.rounding[c]);
+    }
   }
 
   /// Nothing of the lanes' rows absorbs after all.
@@ -326,15 +379,19 @@ class LayeredPacket {
   [[gnu::flatten]] void integrate(M on) noexcept {
     const F ahead = F(1) - from_;
     F place = min(cap_, F(1));
-    M found = on;
+    M found = on, mixed(false);
     for (int k = 0; k < layers_; ++k) {
       Layer& layer = layer_[k];
       const M here = on & layer.present;
       if (none(here)) continue;
-      layer.span.cap = F(1);
-      begin_piece(layer.span, layer.transfers, here, layer.piece);
-      found = found & (layer.piece.end.found | !here);
-      place = select(here, min(place, layer.piece.place), place);
+      if (layer.mixture != nullptr) {
+        mixed = mixed | here;
+      } else {
+        layer.span.cap = F(1);
+        begin_piece(layer.span, layer.transfers, here, layer.piece);
+        found = found & (layer.piece.end.found | !here);
+        place = select(here, min(place, layer.piece.place), place);
+      }
       if (!layer.has_light) continue;
       const F kink = layer.light.kink();
       const M before = here & (kink > from_) & (kink < F(1));
@@ -348,11 +405,15 @@ class LayeredPacket {
       const M here = on & layer.present;
       if (any(here)) measure(layer, here, place, to, sum);
     }
-    const F depth = sum.depth;
-    SegmentResult<F> s = segment_of_depth(depth, Rgb<F>{});
     const F length = ahead * place * length_;
     const F left = left_ - from_ * length_;
     fold_.budget.set_remaining_length(select(on, left, fold_.budget.remaining_length()));
+    if (any(mixed)) integrate_mixed(mixed, found, place, to, length, sum);
+    on = on & !mixed;
+    found = found & on;
+    if (none(on)) return;
+    const F depth = sum.depth;
+    SegmentResult<F> s = segment_of_depth(depth, Rgb<F>{});
     const F transparency = fold_.transparency(), seen = transparency * s.opacity;
     // What is off whatever the color.
     const F range = min(sum.range(), F(2) * largest_color_);
@@ -379,14 +440,7 @@ class LayeredPacket {
     const M by_six = affordable & (!by_means) & (!by_three) & (variance <= largest);
     const M take = by_means | by_three | by_six;
     const M rest = on & !take;
-    if (any(rest)) {
-      const F half = F(0.5f) * place;
-      // Light may turn in a small part of a row, and a table be narrow.
-      const M halve = rest & affordable & (tried_ < I(most_pieces)) &
-                      (ahead * half >= F(narrowest)) & (variance <= F(1e6f) * largest);
-      cap_ = select(halve, half, cap_);
-      wait_for_caller(rest & !halve);
-    }
+    if (any(rest)) halve(rest, affordable & (variance <= F(1e6f) * largest), place);
     if (none(take)) return;
     Rgb<F> color = sum.color();
     if (any(by_three)) color = select(by_three, nodes_color<3>(by_three, length), color);
@@ -408,8 +462,91 @@ class LayeredPacket {
     retire(take);
   }
 
+  /// Halves the lanes' pieces where that may help, and leaves the others to the caller: light may
+  /// turn in a small part of a row, and a table be narrow.
+  void halve(M lanes, M may_help, F place) noexcept {
+    const F half = F(0.5f) * place;
+    const M halved =
+        lanes & may_help & (tried_ < I(most_pieces)) & ((F(1) - from_) * half >= F(narrowest));
+    cap_ = select(halved, half, cap_);
+    wait_for_caller(lanes & !halved);
+  }
+
+  /// Pieces in which a layer has Gaussians. `found`: where those of the other layers are known.
+  [[gnu::noinline]] void integrate_mixed(M on, M found, F place, F to, F length,
+                                         const PieceSum<N>& sum) noexcept {
+    const detail::PanelNodes<4, F> few = nodes<4>(on, length);
+    const detail::PanelNodes<7, F> many = nodes<7>(on, length);
+    const Rgb<F> color = detail::panel_color(many);
+    const F change = max(largest_component(detail::panel_color(few) - color),
+                         largest_component(detail::color_of_every_other(many) - color));
+    // As integrate_lit_panel(); where light turns faster, as other pieces in light.
+    const M even = sum.exponents <= F(2);
+    const M smooth = even & (many.total <= F(4)) & (sum.turns <= F(16)) & (sum.sharpness <= F(4));
+    const F range = min(sum.range(), F(2) * largest_color_);
+    const F apart = min(max(sum.most - sum.least, F(0)), F(1));
+    const F depth_error = select(smooth, min(apart, abs(few.total - many.total)), apart);
+    const F one_deviation = F(1.0f / RandomErrors<F>::deviations);
+    const NodeDeviations<N> by_nodes(range, sum.turns, sum.sharpness, many.total);
+    const F of_light = select(even, by_nodes.by_six, one_deviation * range);
+    const F color_deviation =
+        select(smooth, min(of_light, one_deviation * F(2) * change), of_light);
+    const auto within = [](F x, F lower, F upper) noexcept { return min(max(x, lower), upper); };
+    const SegmentResult<F> s =
+        segment_of_depth(many.total, Rgb<F>{within(color.r, sum.lower.r, sum.upper.r),
+                                            within(color.g, sum.lower.g, sum.upper.g),
+                                            within(color.b, sum.lower.b, sum.upper.b)});
+    const F transparency = fold_.transparency();
+    const F fixed = segment_rounding(s, F(32 * rounding_unit<float>), largest_color_,
+                                     sum.depth_error, sum.color_rounding, range) +
+                    largest_color_ * min(left_out_ * length, F(1)) + s.opacity * sum.color_error;
+    const F linear = transparency * fixed, left = left_ - from_ * length_;
+    const M affordable =
+        found & (linear <= F(0.6f) * fold_.budget.span_share(length, s.opacity).sum());
+    // Of nodes' errors, which add up as random ones do.
+    const F deviation =
+        transparency * (s.opacity * color_deviation + one_deviation * largest_color_ * depth_error);
+    const typename LikeErrors<F>::Signs signs = sum.signs(range);
+    const F variance = max(like_.variance_with(signs, deviation) - sampled_.variance(), F(0));
+    const F largest = sampled_.largest_variance(fold_.budget, linear, s.opacity, length, left);
+    const M take = on & affordable & (variance <= largest);
+    const M rest = on & !take;
+    if (any(rest)) halve(rest, affordable & (variance <= F(1e6f) * largest), place);
+    if (none(take)) return;
+    fold_.add(take, s);
+    sampled_.charge(take, fold_.budget, variance, linear, s.opacity, length, left, transparency);
+    like_.add(take, signs, deviation);
+    pieces_ += select(take, I(1), I(0));
+    panels_ += select(take, I(1), I(0));
+    proved_ = proved_ & !take;
+    go_past(take, place, to);
+    retire(take);
+  }
+
+  /// Measures the piece of a layer of several variables, up to `to` of the row.
+  void measure_mixture(Layer& layer, M here, F to, PieceSum<N>& sum) noexcept {
+    const F length = (to - from_) * length_;
+    const auto found = layer.gaussians.measure(*layer.mixture, here, from_, to, length);
+    typename PieceSum<N>::Colors colors{found.colors.lower, found.colors.upper,
+                                        found.colors.oscillation(), F(0)};
+    if (layer.has_light) {
+      const M any_colors = found.most > F(0);
+      const auto shown = [&](const Rgb<F>& c) noexcept {
+        return select(any_colors, c, Rgb<F>{F(0), F(0), F(0)});
+      };
+      const Rgb<F> upper = shown(colors.upper);
+      layer.lit =
+          layer.light.measure(colors.range, F(0), found.most, largest_component(upper), from_, to);
+      colors = {layer.lit.bounds.lower.apply(shown(colors.lower)),
+                layer.lit.bounds.upper.apply(upper), layer.lit.range, layer.lit.color_error};
+      sum.light_up(here, layer.lit);
+    }
+    sum.add_mixture(here, found, colors);
+  }
+
   /// Measures the piece of a layer up to `place` of what is left, `to` of the row.
   [[gnu::noinline]] void measure(Layer& layer, M here, F place, F to, PieceSum<N>& sum) noexcept {
+    if (layer.mixture != nullptr) return measure_mixture(layer, here, to, sum);
     SpanPiece<float, N>& piece = layer.piece;
     piece.capped = piece.capped | (place < piece.place);
     piece.crosses = piece.crosses & !(place < piece.place);
@@ -441,7 +578,12 @@ class LayeredPacket {
   /// The color of pieces by Nodes Gauss nodes.
   template <int Nodes>
   [[gnu::noinline]] Rgb<F> nodes_color(M lanes, F length) noexcept {
-    const detail::PanelNodes<Nodes, F> nodes(length, [&](F u) noexcept {
+    return detail::panel_color(nodes<Nodes>(lanes, length));
+  }
+  /// What all layers have at Nodes Gauss nodes of pieces.
+  template <int Nodes>
+  [[gnu::noinline]] detail::PanelNodes<Nodes, F> nodes(M lanes, F length) noexcept {
+    return detail::PanelNodes<Nodes, F>(length, [&](F u) noexcept {
       F extinction(0);
       Rgb<F> source{F(0), F(0), F(0)};
       for (int k = 0; k < layers_; ++k) {
@@ -459,9 +601,13 @@ class LayeredPacket {
       const F weight = select(shines, F(1) / select(shines, extinction, F(1)), F(0));
       return Material<F>{select(shines, extinction, F(0)), weight * source};
     });
-    return detail::panel_color(nodes);
   }
   static Material<F> material(Layer& layer, M here, F u) noexcept {
+    if (layer.mixture != nullptr) {
+      Material<F> found = layer.gaussians.material(*layer.mixture, here, u);
+      if (layer.has_light) found.color = layer.light.lit_at(layer.lit, u).apply(found.color);
+      return found;
+    }
     if (layer.has_light) {
       return layer.light.material(layer.lit, layer.piece, layer.span, u, here, layer.transfers,
                                   layer.span.color);
@@ -481,7 +627,7 @@ class LayeredPacket {
       Layer& layer = layer_[k];
       const M here = take & layer.present;
       if (none(here)) continue;
-      layer.span.go_past(here, layer.piece, layer.transfers);
+      if (layer.mixture == nullptr) layer.span.go_past(here, layer.piece, layer.transfers);
       if (layer.has_light) layer.light.go_past(here, to);
     }
     const F left = F(1) - place;
