@@ -10,18 +10,18 @@
 #include "pellucid/packet/sampler_interface.h"
 #include "pellucid/simd/instruction_set.h"
 
-#define PELLUCID_ABSENT(function, Job)             \
-  extern "C" void PELLUCID_ENTRY(function)(Job*) { \
-    __builtin_trap();                              \
+#define PELLUCID_ABSENT(name)                         \
+  extern "C" void PELLUCID_ENTRY(name)(name##_job*) { \
+    __builtin_trap();                                 \
   }
 
-PELLUCID_ABSENT(pellucid_integrate_packets, const PellucidPacketJob)
-PELLUCID_ABSENT(pellucid_integrate_lit_packets, const PellucidPacketJob)
-PELLUCID_ABSENT(pellucid_meet_surfaces, const PellucidPacketJob)
-PELLUCID_ABSENT(pellucid_sample_packets, const PellucidSamplerJob)
-PELLUCID_ABSENT(pellucid_integrate_gaussian_packets, const PellucidGaussianPacketJob)
-PELLUCID_ABSENT(pellucid_integrate_multivariate_cells, const PellucidGaussianPacketJob)
-PELLUCID_ABSENT(pellucid_sample_multivariate, const PellucidMultivariateSamplerJob)
-PELLUCID_ABSENT(pellucid_integrate_mesh, const PellucidMeshJob)
-PELLUCID_ABSENT(pellucid_integrate_multivariate_mesh, const PellucidMeshJob)
-PELLUCID_ABSENT(pellucid_integrate_layers, PellucidLayeredJob)
+PELLUCID_ABSENT(pellucid_integrate_packets)
+PELLUCID_ABSENT(pellucid_integrate_lit_packets)
+PELLUCID_ABSENT(pellucid_meet_surfaces)
+PELLUCID_ABSENT(pellucid_sample_packets)
+PELLUCID_ABSENT(pellucid_integrate_gaussian_packets)
+PELLUCID_ABSENT(pellucid_integrate_multivariate_cells)
+PELLUCID_ABSENT(pellucid_sample_multivariate)
+PELLUCID_ABSENT(pellucid_integrate_mesh)
+PELLUCID_ABSENT(pellucid_integrate_multivariate_mesh)
+PELLUCID_ABSENT(pellucid_integrate_layers)

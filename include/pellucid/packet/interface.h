@@ -4,7 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "pellucid/simd/instruction_set.h"
+#include "pellucid/packet/kernel.h"
+#include "pellucid/packet/view.h"
 
 /// What goes between the renderer and the packets of rays, which are compiled once for each
 /// instruction set, each time with namespace pellucid under another name: plain numbers and
@@ -72,19 +73,22 @@ enum PellucidValue : std::int32_t {
   pellucid_f64
 };
 
+/// What the caller of a kernel knows of a job, and the kernel does not.
+struct PellucidCellContext;
+
 struct PellucidPacketJob {
   // The grid: uniform, at least two values along each axis.
-  const void* data;
+  const void* data;  ///< of this type
   PellucidValue type;
   std::int32_t values[3], padding[3];
   // Its blocks.
-  const void* classes;  ///< BlockClass per block, x fastest
+  PellucidView<PellucidBlockClasses> classes;  ///< one per block, x fastest
   // The transfer function and what is wanted.
-  const void* transfer;  ///< BinnedTransfer
+  PellucidView<PellucidBinnedTransfer> transfer;
   double tolerance, largest_color, largest_extinction;
   // Smooth blocks, which are sampled.
-  const void* samples;     ///< SamplerTransfer
-  const void* smooth;      ///< SmoothBlocks; none where cells are wanted
+  PellucidView<PellucidSamplerTransfer> samples;
+  PellucidView<PellucidSmoothBlocks> smooth;  ///< none where cells are wanted
   double sample_rounding;  ///< what rounding makes of the error of a ray there, per world length
   // Rays and results.
   const PellucidRay* rays;
@@ -93,19 +97,19 @@ struct PellucidPacketJob {
   std::int32_t depth;   ///< whether results are to say where half of the opacity is
   std::int32_t proved;  ///< whether bounds are wanted, not estimates
   /// Integrates what the packets hand back.
-  void (*integrate_cell)(const void* context, std::int32_t ray, const PellucidCell* cell,
-                         PellucidCellResult* result);
-  const void* context;
-  const void* records;   ///< BlockRecord per block, in the order of the classes
-  const void* light;     ///< PacketLight; null: unlit
-  const void* surfaces;  ///< PacketSurfaces; null: none
+  void (*integrate_cell)(const PellucidCellContext* context, std::int32_t ray,
+                         const PellucidCell* cell, PellucidCellResult* result);
+  const PellucidCellContext* context;
+  PellucidView<PellucidBlockRecords> records;  ///< one per block, in the order of the classes
+  PellucidView<PellucidLight> light;           ///< null: unlit
+  PellucidView<PellucidSurfaces> surfaces;     ///< null: none
 };
 
-PELLUCID_DECLARE_ENTRIES(void, pellucid_integrate_packets, (const PellucidPacketJob* job));
+PELLUCID_KERNEL(pellucid_integrate_packets, const PellucidPacketJob);
 
 /// With light, gradient opacity or isosurfaces, data of types that binary32 holds, estimates.
-PELLUCID_DECLARE_ENTRIES(void, pellucid_integrate_lit_packets, (const PellucidPacketJob* job));
+PELLUCID_KERNEL(pellucid_integrate_lit_packets, const PellucidPacketJob);
 
 /// Isosurfaces and nothing else, of such data without vacuum.
-PELLUCID_DECLARE_ENTRIES(void, pellucid_meet_surfaces, (const PellucidPacketJob* job));
+PELLUCID_KERNEL(pellucid_meet_surfaces, const PellucidPacketJob);
 }

@@ -76,18 +76,17 @@ struct PellucidLayerRow {
 struct PellucidLayeredJob {
   enum Step : std::int32_t { size, begin, go_on, finish };
   Step step;
-  void* state;              ///< aligned to 64 bytes; of state_size bytes
+  unsigned char* state;     ///< aligned to 64 bytes; of state_size bytes
   std::int64_t state_size;  ///< out, of `size`
   std::int32_t lanes;       ///< out, of `size`
 
   // Of all rays.
   std::int32_t layers;
-  const void* const* functions;  ///< BinnedTransfer of each
-  const void* const* light;      ///< PacketLight of each layer; null: unlit
+  const PellucidView<PellucidBinnedTransfer>* functions;
+  const PellucidView<PellucidLight>* light;  ///< of each layer; null: unlit
   /// The grids of the variables of each layer whose cells parts name; null: they name none.
   const PellucidPacketJob* const* grid;
-  /// LaneMixture of each layer of several variables; else null.
-  const void* const* mixture;
+  const PellucidView<PellucidLaneMixture>* mixture;  ///< of each layer; null: of one variable
   /// Of these layers, the data of parts that are no cells: [lane][row], of each variable.
   const float* const* curves;
   double largest_color, largest_extinction;
@@ -115,5 +114,5 @@ struct PellucidLayeredJob {
   PellucidRayResult* results;  ///< of `finish`
 };
 
-PELLUCID_DECLARE_ENTRIES(void, pellucid_integrate_layers, (PellucidLayeredJob * job));
+PELLUCID_KERNEL(pellucid_integrate_layers, PellucidLayeredJob);
 }

@@ -21,10 +21,13 @@ struct PellucidLinearSpan {
   double error, length, position_error, end_error;
 };
 
+/// What the caller of a kernel knows of a job, and the kernel does not.
+struct PellucidSpanContext;
+
 struct PellucidMeshJob {
-  const void* mesh;    ///< Tetrahedra
-  const void* points;  ///< MeshPoint per point
-  const void* fields;  ///< MeshFields
+  PellucidView<PellucidTetrahedra> mesh;
+  PellucidView<PellucidMeshPoints> points;  ///< one per point
+  PellucidView<PellucidMeshFields> fields;
   /// Of several variables: their values at value_points points, 0 where they have none there: of
   /// the first four channels at each point, then of the next four.
   const double* values;
@@ -32,7 +35,8 @@ struct PellucidMeshJob {
   /// Whether rays see the mesh in double, and not in binary32.
   std::int32_t in_double;
   // The transfer function and what is wanted.
-  const void* transfer;  ///< BinnedTransfer; for several variables NearMixture
+  PellucidView<PellucidBinnedTransfer> transfer;  ///< of one variable
+  PellucidView<PellucidNearMixture> mixture;      ///< of several
   double tolerance, largest_color, largest_extinction;
   std::int32_t proved;  ///< whether only what is proved counts
   std::int32_t depth;   ///< whether results are to say where half of the opacity is
@@ -41,13 +45,13 @@ struct PellucidMeshJob {
   PellucidRayResult* results;
   std::int32_t count;
   /// Integrates what the packets hand back; those of several variables hand nothing back.
-  void (*integrate_span)(const void* context, const PellucidLinearSpan* span,
+  void (*integrate_span)(const PellucidSpanContext* context, const PellucidLinearSpan* span,
                          PellucidCellResult* result);
-  const void* context;
+  const PellucidSpanContext* context;
 };
 
-PELLUCID_DECLARE_ENTRIES(void, pellucid_integrate_mesh, (const PellucidMeshJob* job));
+PELLUCID_KERNEL(pellucid_integrate_mesh, const PellucidMeshJob);
 
 /// Rays through several variables, in double.
-PELLUCID_DECLARE_ENTRIES(void, pellucid_integrate_multivariate_mesh, (const PellucidMeshJob* job));
+PELLUCID_KERNEL(pellucid_integrate_multivariate_mesh, const PellucidMeshJob);
 }

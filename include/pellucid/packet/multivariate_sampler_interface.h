@@ -8,13 +8,12 @@ extern "C" {
 
 struct PellucidMultivariateSamplerJob {
   PellucidPacketJob grid_and_rays;  ///< of this the grid without data, its blocks, rays and results
-  const void* grid;                 ///< MultichannelGrid
-  const void* primitives;           ///< PrimitiveSet per block: those that matter there
-  const void* transfer;             ///< SampledMultivariate
-  double step;                      ///< world length
-  double stop;                      ///< the transparency at which a ray ends
+  PellucidView<PellucidMultichannelGrid> grid;
+  PellucidView<PellucidPrimitiveSets> primitives;  ///< per block: those that matter there
+  PellucidView<PellucidSampledMultivariate> transfer;
+  double step;  ///< world length
+  double stop;  ///< the transparency at which a ray ends
 };
 
-PELLUCID_DECLARE_ENTRIES(void, pellucid_sample_multivariate,
-                         (const PellucidMultivariateSamplerJob* job));
+PELLUCID_KERNEL(pellucid_sample_multivariate, const PellucidMultivariateSamplerJob);
 }

@@ -11,12 +11,12 @@ enum PellucidSamplingRule : std::int32_t { pellucid_midpoint, pellucid_preintegr
 struct PellucidSamplerJob {
   PellucidPacketJob grid_and_rays;  ///< of this the grid, its blocks, rays and results
   PellucidSamplingRule rule;
-  const void* transfer;       ///< SamplerTransfer
-  const void* preintegrated;  ///< PreintegratedTable; empty where the rule is another
-  const void* light;          ///< PacketLight; null: unlit
-  double step;                ///< world length
-  double stop;                ///< the transparency at which a ray ends
+  PellucidView<PellucidSamplerTransfer> transfer;
+  PellucidView<PellucidPreintegrated> preintegrated;  ///< empty where the rule is another
+  PellucidView<PellucidLight> light;                  ///< null: unlit
+  double step;                                        ///< world length
+  double stop;                                        ///< the transparency at which a ray ends
 };
 
-PELLUCID_DECLARE_ENTRIES(void, pellucid_sample_packets, (const PellucidSamplerJob* job));
+PELLUCID_KERNEL(pellucid_sample_packets, const PellucidSamplerJob);
 }

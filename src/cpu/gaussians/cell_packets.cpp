@@ -19,12 +19,8 @@ constexpr double left_out_share = 1.0 / 16;
 /// Below, what budgets in binary32 lose and what folding in double does would be most of it.
 constexpr double least_tolerance = 1e-11;
 
-GaussianPacketKernel kernel_for([[maybe_unused]] InstructionSet set) {
-#if PELLUCID_HAS_PACKETS
-  return entry_of(set, PELLUCID_ENTRIES(pellucid_integrate_multivariate_cells));
-#else
-  return nullptr;
-#endif
+GaussianPacketKernel kernel_for(InstructionSet set) {
+  return PELLUCID_KERNEL_OF(set, pellucid_integrate_multivariate_cells);
 }
 
 }  // namespace
@@ -95,7 +91,7 @@ std::unique_ptr<const CellPackets> CellPackets::make(
       largest, false, transfer, left_out_share * wanted.tolerance / job.grid_and_rays.largest_color,
       diagonal(channels.grid()));
   if (!packets->mixture_.suits_packets()) return nullptr;
-  job.mixture = &packets->mixture_.view();
+  job.near = &packets->mixture_.view();
   return packets;
 }
 

@@ -32,12 +32,8 @@ bool fits_binary32(const Volume& volume) {
   });
 }
 
-GaussianPacketKernel kernel_for([[maybe_unused]] InstructionSet set) {
-#if PELLUCID_HAS_PACKETS
-  return entry_of(set, PELLUCID_ENTRIES(pellucid_integrate_gaussian_packets));
-#else
-  return nullptr;
-#endif
+GaussianPacketKernel kernel_for(InstructionSet set) {
+  return PELLUCID_KERNEL_OF(set, pellucid_integrate_gaussian_packets);
 }
 
 /// What rounding of the terms of K (v - c) makes, in units: where the primitive matters they may be
@@ -118,7 +114,7 @@ GaussianPackets::GaussianPackets(const Channels& channels, std::vector<SteppedGa
       job_(job),
       kernel_(kernel) {
   job_.variation = variation_.data();
-  job_.mixture = &mixture_;
+  job_.stepped = &mixture_;
 }
 
 void GaussianPackets::trace(const std::vector<PellucidRay>& rays, double share, const float* waves,

@@ -4,10 +4,8 @@
 // (cmake/PellucidInstructionSets.cmake).
 #include "pellucid/packet/bundle/multivariate_cell_packet.h"
 #include "pellucid/simd/flush_to_zero.h"
-#include "pellucid/simd/instruction_set.h"
 
-extern "C" void PELLUCID_ENTRY(pellucid_integrate_multivariate_cells)(
-    const PellucidGaussianPacketJob* job) {
+PELLUCID_DEFINE_KERNEL(pellucid_integrate_multivariate_cells) {
   const pellucid::FlushToZero mode;
   constexpr int lanes = PELLUCID_LANES;
   using Packet = pellucid::MultivariateCellPacket<lanes>;

@@ -5,9 +5,8 @@
 #include "pellucid/packet/cells/packet_integrator.h"
 #include "pellucid/packet/cells/run_packets.h"
 #include "pellucid/simd/flush_to_zero.h"
-#include "pellucid/simd/instruction_set.h"
 
-extern "C" void PELLUCID_ENTRY(pellucid_integrate_packets)(const PellucidPacketJob* job) {
+PELLUCID_DEFINE_KERNEL(pellucid_integrate_packets) {
   const pellucid::FlushToZero mode;
   pellucid::run_packets<pellucid::PacketIntegrator<PELLUCID_LANES>>(*job);
 }

@@ -11,31 +11,24 @@
 #include "pellucid/field/trilinear.h"
 #include "pellucid/render/integrate_ray.h"
 
+struct PellucidCellContext {
+  const pellucid::PacketTracer* tracer;
+  const PellucidRay* rays;
+  double tolerance;
+};
+
 namespace pellucid {
 namespace {
 
 using Kernel = void (*)(const PellucidPacketJob*);
 
-Kernel integrator_of([[maybe_unused]] InstructionSet set, [[maybe_unused]] bool lit) {
-#if PELLUCID_HAS_PACKETS
-  if (lit) {
-    return entry_of(set, PELLUCID_ENTRIES(pellucid_integrate_lit_packets));
-  }
-  return entry_of(set, PELLUCID_ENTRIES(pellucid_integrate_packets));
-#else
-  return nullptr;
-#endif
+Kernel integrator_of(InstructionSet set, bool lit) {
+  return lit ? PELLUCID_KERNEL_OF(set, pellucid_integrate_lit_packets)
+             : PELLUCID_KERNEL_OF(set, pellucid_integrate_packets);
 }
 
 /// Packets count the records' words in 32 bits.
 constexpr int words_of_a_record = sizeof(BlockRecord) / sizeof(std::int32_t);
-
-/// What integrate_cell() is given back.
-struct CellContext {
-  const void* tracer;
-  const PellucidRay* rays;
-  double tolerance;
-};
 
 /// Steps get as short as cells that are gone through with closed forms are worth: an eighth of a
 /// voxel where these are cut at the many points of a table, a quarter where they are not; half a
@@ -118,7 +111,7 @@ std::vector<PellucidRayResult> PacketTracer::integrate(const std::vector<Pelluci
   std::vector<PellucidRayResult> found(rays.size());
   PellucidPacketJob job = job_;
   job.tolerance *= share;
-  const CellContext context{this, rays.data(), job.tolerance};
+  const PellucidCellContext context{this, rays.data(), job.tolerance};
   job.rays = rays.data();
   job.results = found.data();
   job.count = static_cast<std::int32_t>(rays.size());
@@ -157,11 +150,10 @@ std::vector<RayResult> PacketTracer::trace(const std::vector<RayPart>& in_grid, 
   return results;
 }
 
-void PacketTracer::integrate_cell(const void* context, std::int32_t ray, const PellucidCell* cell,
-                                  PellucidCellResult* result) {
-  const auto& [of, rays, tolerance] = *static_cast<const CellContext*>(context);
-  const PacketTracer& tracer = *static_cast<const PacketTracer*>(of);
-  const PellucidRay& from = rays[ray];
+void PacketTracer::integrate_cell(const PellucidCellContext* context, std::int32_t ray,
+                                  const PellucidCell* cell, PellucidCellResult* result) {
+  const PacketTracer& tracer = *context->tracer;
+  const PellucidRay& from = context->rays[ray];
   tracer.volume_.visit([&](const auto& grid) {
     double lower[3], upper[3], begin = from.begin + cell->begin, end = from.end;
     for (int a = 0; a < 3; ++a) {
@@ -193,7 +185,7 @@ void PacketTracer::integrate_cell(const void* context, std::int32_t ray, const P
           map.point({from.origin[0], from.origin[1], from.origin[2]}),
           map.matrix * Vec3<double>{from.direction[0], from.direction[1], from.direction[2]}};
       const double share = (end - begin) * (1 - cell->from) / (from.end - from.begin);
-      const double least = RayBudget<double>::minimum_allowance(tolerance, share);
+      const double least = RayBudget<double>::minimum_allowance(context->tolerance, share);
       tracer.light_->integrate(step, world, *cell, tracer.transfer_, least, *result);
       return;
     }

@@ -57,8 +57,8 @@ class PacketTracer {
   /// Integrates rays that meet the grid's box between their ends.
   std::vector<PellucidRayResult> integrate(const std::vector<PellucidRay>& rays, double share,
                                            bool depth) const;
-  static void integrate_cell(const void* context, std::int32_t ray, const PellucidCell* cell,
-                             PellucidCellResult* result);
+  static void integrate_cell(const PellucidCellContext* context, std::int32_t ray,
+                             const PellucidCell* cell, PellucidCellResult* result);
 
   const Volume& volume_;
   RaysApart rays_apart_;

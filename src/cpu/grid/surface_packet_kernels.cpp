@@ -5,9 +5,8 @@
 #include "pellucid/packet/cells/run_packets.h"
 #include "pellucid/packet/cells/surface_packet.h"
 #include "pellucid/simd/flush_to_zero.h"
-#include "pellucid/simd/instruction_set.h"
 
-extern "C" void PELLUCID_ENTRY(pellucid_meet_surfaces)(const PellucidPacketJob* job) {
+PELLUCID_DEFINE_KERNEL(pellucid_meet_surfaces) {
   const pellucid::FlushToZero mode;
   pellucid::run_packets<pellucid::SurfacePacket<PELLUCID_LANES>>(*job);
 }

@@ -19,13 +19,9 @@ namespace {
 
 using Kernel = void (*)(const PellucidPacketJob*);
 
-Kernel kernel_for([[maybe_unused]] const TracerTask& task) {
-#if PELLUCID_HAS_PACKETS
-  return entry_of(packet_instruction_set(task.options.instruction_set),
-                  PELLUCID_ENTRIES(pellucid_meet_surfaces));
-#else
-  return nullptr;
-#endif
+Kernel kernel_for(const TracerTask& task) {
+  return PELLUCID_KERNEL_OF(packet_instruction_set(task.options.instruction_set),
+                            pellucid_meet_surfaces);
 }
 
 /// Whether a layer is isosurfaces and nothing else.

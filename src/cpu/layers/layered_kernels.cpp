@@ -6,9 +6,8 @@
 
 #include "pellucid/packet/layers/layered_packet.h"
 #include "pellucid/simd/flush_to_zero.h"
-#include "pellucid/simd/instruction_set.h"
 
-extern "C" void PELLUCID_ENTRY(pellucid_integrate_layers)(PellucidLayeredJob* job) {
+PELLUCID_DEFINE_KERNEL(pellucid_integrate_layers) {
   using Packet = pellucid::LayeredPacket<PELLUCID_LANES>;
   static_assert(alignof(Packet) <= 64 && std::is_trivially_destructible_v<Packet>);
   const pellucid::FlushToZero mode;
@@ -21,10 +20,10 @@ extern "C" void PELLUCID_ENTRY(pellucid_integrate_layers)(PellucidLayeredJob* jo
       new (job->state) Packet(*job);
       return;
     case PellucidLayeredJob::go_on:
-      static_cast<Packet*>(job->state)->run(*job);
+      std::launder(reinterpret_cast<Packet*>(job->state))->run(*job);
       return;
     case PellucidLayeredJob::finish:
-      static_cast<const Packet*>(job->state)->store(*job);
+      std::launder(reinterpret_cast<const Packet*>(job->state))->store(*job);
       return;
   }
 }

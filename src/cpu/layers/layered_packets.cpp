@@ -75,26 +75,23 @@ int lit_variable(const LayerLook& look) {
 using Kernel = void (*)(PellucidLayeredJob*);
 
 /// Null: there are no packets here.
-Kernel find_kernel([[maybe_unused]] std::optional<InstructionSet> wanted) {
-#if PELLUCID_HAS_PACKETS
-  return entry_of(packet_instruction_set(wanted), PELLUCID_ENTRIES(pellucid_integrate_layers));
-#else
-  return nullptr;
-#endif
+Kernel find_kernel(std::optional<InstructionSet> wanted) {
+  return PELLUCID_KERNEL_OF(packet_instruction_set(wanted), pellucid_integrate_layers);
 }
 
 /// Memory of a packet's state.
 class AlignedBytes {
  public:
-  explicit AlignedBytes(std::size_t size) : bytes_(::operator new(size, alignment)) {}
+  explicit AlignedBytes(std::size_t size)
+      : bytes_(static_cast<unsigned char*>(::operator new(size, alignment))) {}
   ~AlignedBytes() { ::operator delete(bytes_, alignment); }
   AlignedBytes(const AlignedBytes&) = delete;
   AlignedBytes& operator=(const AlignedBytes&) = delete;
-  void* get() const { return bytes_; }
+  unsigned char* get() const { return bytes_; }
 
  private:
   static constexpr std::align_val_t alignment{64};
-  void* bytes_;
+  unsigned char* bytes_;
 };
 
 }  // namespace
@@ -142,11 +139,11 @@ LayeredPackets::LayeredPackets(const std::vector<ClippedLayer>& layers,
     add(layer, &all);
     largest_extinction += layer.setup->largest_extinction();
   }
-  for (const BinnedTransferStorage& function : functions_) function_.push_back(&function.view());
+  for (const BinnedTransferStorage& function : functions_) function_.emplace_back(&function.view());
   for (const SeenLayer& one : seen_) {
-    light_.push_back(one.light ? &*one.light : nullptr);
+    light_.emplace_back(one.light ? &*one.light : nullptr);
     grid_.push_back(one.in_lanes && one.source->cells() != nullptr ? one.grid.data() : nullptr);
-    mixture_.push_back(one.mixture ? &*one.mixture : nullptr);
+    mixture_.emplace_back(one.mixture ? &*one.mixture : nullptr);
   }
   job_.layers = static_cast<std::int32_t>(layers.size());
   job_.functions = function_.data();

@@ -57,7 +57,9 @@ class LayeredPackets {
   int marks_ = 0;
   PellucidLayeredJob job_{};  ///< what all rays have in common
   // As the job sees them.
-  std::vector<const void*> function_, light_, mixture_;
+  std::vector<PellucidView<PellucidBinnedTransfer>> function_;
+  std::vector<PellucidView<PellucidLight>> light_;
+  std::vector<PellucidView<PellucidLaneMixture>> mixture_;
   std::vector<const PellucidPacketJob*> grid_;
 };
 

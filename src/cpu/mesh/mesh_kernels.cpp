@@ -4,7 +4,6 @@
 // (cmake/PellucidInstructionSets.cmake).
 #include "pellucid/packet/mesh/mesh_packet.h"
 #include "pellucid/simd/flush_to_zero.h"
-#include "pellucid/simd/instruction_set.h"
 
 namespace {
 
@@ -33,7 +32,7 @@ void run(const PellucidMeshJob& job) {
 
 }  // namespace
 
-extern "C" void PELLUCID_ENTRY(pellucid_integrate_mesh)(const PellucidMeshJob* job) {
+PELLUCID_DEFINE_KERNEL(pellucid_integrate_mesh) {
   const pellucid::FlushToZero mode;
   job->in_double != 0 ? run<double>(*job) : run<float>(*job);
 }

@@ -17,6 +17,11 @@
 #include "pellucid/scene/transfer_tables_storage.h"
 #include "ray_tracer.h"
 
+struct PellucidSpanContext {
+  const pellucid::TransferTables* transfer;
+  double largest_color;
+};
+
 namespace pellucid {
 namespace {
 
@@ -30,16 +35,10 @@ const MeshChannels& mesh_of(const TracerTask& task) {
 
 using Kernel = void (*)(const PellucidMeshJob*);
 
-/// Null: rays go one by one.
-Kernel kernel_for([[maybe_unused]] InstructionSet set, [[maybe_unused]] bool several) {
-#if PELLUCID_HAS_PACKETS
-  if (several) {
-    return entry_of(set, PELLUCID_ENTRIES(pellucid_integrate_multivariate_mesh));
-  }
-  return entry_of(set, PELLUCID_ENTRIES(pellucid_integrate_mesh));
-#else
-  return nullptr;
-#endif
+/// Returns null where rays go one by one.
+Kernel kernel_for(InstructionSet set, bool several) {
+  return several ? PELLUCID_KERNEL_OF(set, pellucid_integrate_multivariate_mesh)
+                 : PELLUCID_KERNEL_OF(set, pellucid_integrate_mesh);
 }
 
 class MeshTracer : public RayTracer {
@@ -89,7 +88,6 @@ class MeshTracer : public RayTracer {
     job_.largest_extinction = largest_extinction;
     job_.proved = wanted_.grade == Grade::proved ? 1 : 0;
     job_.depth = depth_ ? 1 : 0;
-    job_.context = this;
     points_ = fields_.points(mesh_of(task).mesh().points());
     job_.points = points_.data();
   }
@@ -145,6 +143,8 @@ class UnivariateMeshTracer : public MeshTracer {
     binned_.emplace(tables.wide, largest_value(mesh_of(task).statistics(0)));
     job_.transfer = &binned_->view();
     job_.integrate_span = &UnivariateMeshTracer::integrate_span;
+    context_ = {&tables, job_.largest_color};
+    job_.context = &context_;
   }
 
  protected:
@@ -188,20 +188,19 @@ class UnivariateMeshTracer : public MeshTracer {
   /// Below it most rays would be followed twice.
   static constexpr double least_tolerance_in_float = 2e-4;
 
-  static void integrate_span(const void* context, const PellucidLinearSpan* span,
+  static void integrate_span(const PellucidSpanContext* context, const PellucidLinearSpan* span,
                              PellucidCellResult* result) {
-    const auto& tracer = *static_cast<const UnivariateMeshTracer*>(context);
     CellSegment<double> found;
     integrate_linear_span(
         {span->front, span->back, span->error, span->length, span->position_error, span->end_error},
-        tracer.transfer_.tables(), tracer.job_.largest_color, true,
-        [](double) noexcept { return 0.0; }, found);
+        *context->transfer, context->largest_color, true, [](double) noexcept { return 0.0; },
+        found);
     const SegmentResult<double>& s = found.found.segment;
     *result = {s.optical_depth,
                s.opacity,
                s.transparency,
                {s.radiance.r, s.radiance.g, s.radiance.b},
-               found.clear ? 0 : found.error(tracer.job_.largest_color),
+               found.clear ? 0 : found.error(context->largest_color),
                found.opacity,
                1,
                0,
@@ -210,6 +209,7 @@ class UnivariateMeshTracer : public MeshTracer {
 
   TransferTablesStorage transfer_;
   std::optional<BinnedTransferStorage> binned_;
+  PellucidSpanContext context_{};
 };
 
 class MultivariateMeshTracer : public MeshTracer {
@@ -233,7 +233,7 @@ class MultivariateMeshTracer : public MeshTracer {
       return;
     }
     job_.tolerance *= 1 - left_out_share;
-    job_.transfer = &mixture_.view();
+    job_.mixture = &mixture_.view();
     const std::size_t points = mesh_of(task).mesh().points().size();
     values_ = fields_.values_by_point(points);
     job_.values = values_.data();

@@ -3,9 +3,8 @@
 // Compiled once per instruction set, with namespace pellucid under a name of its own
 // (cmake/PellucidInstructionSets.cmake).
 #include "pellucid/packet/mesh/multivariate_mesh_packet.h"
-#include "pellucid/simd/instruction_set.h"
 
-extern "C" void PELLUCID_ENTRY(pellucid_integrate_multivariate_mesh)(const PellucidMeshJob* job) {
+PELLUCID_DEFINE_KERNEL(pellucid_integrate_multivariate_mesh) {
   constexpr int lanes = PELLUCID_LANES;
   using Packet = pellucid::MultivariateMeshPacket<lanes>;
   typename Packet::Room room;

@@ -16,12 +16,8 @@ using Kernel = void (*)(const PellucidMultivariateSamplerJob*);
 /// sampling rule can promise.
 constexpr double left_out_opacity = 1e-7;
 
-Kernel kernel_for([[maybe_unused]] InstructionSet set) {
-#if PELLUCID_HAS_PACKETS
-  return entry_of(set, PELLUCID_ENTRIES(pellucid_sample_multivariate));
-#else
-  return nullptr;
-#endif
+Kernel kernel_for(InstructionSet set) {
+  return PELLUCID_KERNEL_OF(set, pellucid_sample_multivariate);
 }
 
 /// Whether places in the primitives, K (v - c), are known to 2e-4 when the data are rounded to

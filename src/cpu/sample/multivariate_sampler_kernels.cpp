@@ -3,10 +3,8 @@
 // Compiled once per instruction set, with namespace pellucid under a name of its own
 // (cmake/PellucidInstructionSets.cmake).
 #include "pellucid/packet/sample/multivariate_sampler.h"
-#include "pellucid/simd/instruction_set.h"
 
-extern "C" void PELLUCID_ENTRY(pellucid_sample_multivariate)(
-    const PellucidMultivariateSamplerJob* job) {
+PELLUCID_DEFINE_KERNEL(pellucid_sample_multivariate) {
   constexpr int lanes = PELLUCID_LANES;
   const PellucidPacketJob& rays = job->grid_and_rays;
   const pellucid::PacketGrid grid(rays);

@@ -11,12 +11,8 @@ namespace {
 
 using Kernel = void (*)(const PellucidSamplerJob*);
 
-Kernel sampler_of([[maybe_unused]] InstructionSet set) {
-#if PELLUCID_HAS_PACKETS
-  return entry_of(set, PELLUCID_ENTRIES(pellucid_sample_packets));
-#else
-  return nullptr;
-#endif
+Kernel sampler_of(InstructionSet set) {
+  return PELLUCID_KERNEL_OF(set, pellucid_sample_packets);
 }
 
 }  // namespace

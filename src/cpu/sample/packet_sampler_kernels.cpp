@@ -4,9 +4,8 @@
 // (cmake/PellucidInstructionSets.cmake).
 #include "pellucid/packet/sample/packet_sampler.h"
 #include "pellucid/simd/flush_to_zero.h"
-#include "pellucid/simd/instruction_set.h"
 
-extern "C" void PELLUCID_ENTRY(pellucid_sample_packets)(const PellucidSamplerJob* job) {
+PELLUCID_DEFINE_KERNEL(pellucid_sample_packets) {
   const pellucid::FlushToZero mode;
   constexpr int lanes = PELLUCID_LANES;
   const PellucidPacketJob& rays = job->grid_and_rays;

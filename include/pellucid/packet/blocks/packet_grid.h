@@ -30,8 +30,8 @@ struct PacketGrid {
   explicit PacketGrid(const PellucidPacketJob& job) noexcept
       : data(job.data),
         type(job.type),
-        classes(static_cast<const std::int32_t*>(job.classes)),
-        records(static_cast<const std::int32_t*>(job.records)),
+        classes(reinterpret_cast<const std::int32_t*>(seen(job.classes))),
+        records(reinterpret_cast<const std::int32_t*>(seen(job.records))),
         row(job.values[0]),
         slice(row * job.values[1]) {
     for (int a = 0; a < 3; ++a) {

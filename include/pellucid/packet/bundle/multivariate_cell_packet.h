@@ -28,12 +28,11 @@ class MultivariateCellPacket {
                          int first, int count) noexcept
       : job_(job),
         rays_(job.grid_and_rays),
-        mixture_(*static_cast<const NearMixture*>(job.mixture)),
+        mixture_(*seen(job.near)),
         rows_(room.rows),
         first_(first),
         count_(count),
-        march_(rays_, grid, *static_cast<const MultichannelGrid*>(job.grid),
-               static_cast<const PrimitiveSet*>(job.primitives), first, count),
+        march_(rays_, grid, *seen(job.grid), seen(job.primitives), first, count),
         lanes_(mixture_, rays_.tolerance, rays_.largest_color, rays_.largest_extinction,
                job.proved != 0, rays_.depth != 0, convert<float>(march_.end), room) {}
 

@@ -50,7 +50,7 @@ class PacketIntegrator {
                    int count) noexcept
       : job_(job),
         grid_(grid),
-        transfer_(*static_cast<const BinnedTransfer*>(job.transfer)),
+        transfer_(*seen(job.transfer)),
         room_(room),
         first_(first),
         count_(count),
@@ -67,7 +67,7 @@ class PacketIntegrator {
         largest_color_(static_cast<float>(job.largest_color)),
         double_will_do_(job.tolerance >
                         64 * static_cast<double>(rounding_unit<float>) * job.largest_color) {
-    if (!(static_cast<const SmoothBlocks*>(job.smooth)->longest_step > 0)) {
+    if (!(seen(job.smooth)->longest_step > 0)) {
       blocks_.in_cells_until = D(std::numeric_limits<double>::infinity());
     }
   }
@@ -119,7 +119,7 @@ class PacketIntegrator {
   static Light make_light(const PellucidPacketJob& job, const PacketGrid& grid,
                           const BlockMarch<N>& rays) noexcept {
     if constexpr (is_lit) {
-      return Light(grid, *static_cast<const PacketLight*>(job.light), rays);
+      return Light(grid, *seen(job.light), rays);
     } else {
       return {};
     }
@@ -127,8 +127,7 @@ class PacketIntegrator {
 
   static Surfaces make_surfaces(const PellucidPacketJob& job) noexcept {
     if constexpr (is_lit) {
-      return Surfaces(static_cast<const PacketSurfaces*>(job.surfaces),
-                      *static_cast<const PacketLight*>(job.light), job.largest_color);
+      return Surfaces(seen(job.surfaces), *seen(job.light), job.largest_color);
     } else {
       return {};
     }

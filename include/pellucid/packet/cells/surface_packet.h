@@ -31,15 +31,15 @@ class SurfacePacket {
                 int count) noexcept
       : job_(job),
         grid_(grid),
-        light_(*static_cast<const PacketLight*>(job.light)),
+        light_(*seen(job.light)),
         room_(room),
         first_(first),
         count_(count),
         blocks_(grid, job.rays + first, count),
-        finder_(grid, blocks_, *static_cast<const BinnedTransfer*>(job.transfer), true),
+        finder_(grid, blocks_, *seen(job.transfer), true),
         gradients_(grid, light_),
         to_eye_(direction_to_eye(light_, blocks_)),
-        surfaces_(static_cast<const PacketSurfaces*>(job.surfaces), light_, job.largest_color),
+        surfaces_(seen(job.surfaces), light_, job.largest_color),
         place_error_(span_end_errors<N>(job, first, count)) {
     for (PellucidHalfOpacity& half : half_) {
       half = {0, std::numeric_limits<double>::infinity(), 0};

@@ -18,7 +18,8 @@ class LaneTransfers {
 
   float largest_color = 0;  ///< of any function
 
-  explicit LaneTransfers(const void* const* functions) noexcept : functions_(functions) {}
+  explicit LaneTransfers(const PellucidView<PellucidBinnedTransfer>* functions) noexcept
+      : functions_(functions) {}
 
   /// The lanes begin spans of these functions, or of data that do not change.
   void begin(M lanes, I function, M constant) noexcept {
@@ -33,13 +34,13 @@ class LaneTransfers {
     while (any(lanes)) {
       const int number = of_lane_[__builtin_ctz(bits(lanes))];
       const M same = lanes & (of_lane_ == I(number));
-      body(*static_cast<const BinnedTransfer*>(functions_[number]), same);
+      body(*seen(functions_[number]), same);
       lanes = lanes & !same;
     }
   }
 
  private:
-  const void* const* functions_;
+  const PellucidView<PellucidBinnedTransfer>* functions_;
   I of_lane_{0};
   M constant_{false};
 };

@@ -114,16 +114,14 @@ class LayeredPacket {
 
     Layer(const PellucidLayeredJob& job, int number, const Vec3<F>& to_eye) noexcept
         : transfers(job.functions),
-          mixture(static_cast<const LaneMixture*>(job.mixture[number])),
-          has_light(job.light[number] != nullptr),
-          light(has_light ? *static_cast<const PacketLight*>(job.light[number]) : no_light(),
-                to_eye),
+          mixture(seen(job.mixture[number])),
+          has_light(seen(job.light[number]) != nullptr),
+          light(has_light ? *seen(job.light[number]) : no_light(), to_eye),
           has_cells(job.grid[number] != nullptr) {
       transfers.largest_color = static_cast<float>(job.largest_color);
       if (has_cells) {
-        new (&cells) CellLoads<N>(
-            job.grid[number], mixture != nullptr ? mixture->light_channel : 0,
-            has_light ? *static_cast<const PacketLight*>(job.light[number]) : no_light());
+        new (&cells) CellLoads<N>(job.grid[number], mixture != nullptr ? mixture->light_channel : 0,
+                                  has_light ? *seen(job.light[number]) : no_light());
       }
     }
   };

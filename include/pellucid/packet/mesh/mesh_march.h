@@ -24,7 +24,7 @@ class MeshMarch {
   MeshMarch(const PellucidMeshJob& job, int first, int count) noexcept
       : rays(job, first, count),
         values_(job),
-        walk_(*static_cast<const Tetrahedra*>(job.mesh)),
+        walk_(*seen(job.mesh)),
         blur_(convert<float>(rays.blur)),
         t_blur_(convert<float>(rays.t_blur)),
         front_(rays.from) {

@@ -35,7 +35,7 @@ class MeshPacket {
 
   MeshPacket(const PellucidMeshJob& job, Room& rows, int first, int count) noexcept
       : job_(job),
-        transfer_(*static_cast<const BinnedTransfer*>(job.transfer)),
+        transfer_(*seen(job.transfer)),
         rows_(rows),
         first_(first),
         count_(count),

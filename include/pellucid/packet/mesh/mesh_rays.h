@@ -28,8 +28,7 @@ class MeshRays {
   static constexpr int most_hits = 48;
 
   MeshRays(const PellucidMeshJob& job, int first, int count) noexcept
-      : mesh_(*static_cast<const Tetrahedra*>(job.mesh)),
-        points_(static_cast<const MeshPoint*>(job.points)) {
+      : mesh_(*seen(job.mesh)), points_(seen(job.points)) {
     const auto load = [this](auto&& number) {
       double of_lane[N];
       for (int l = 0; l < N; ++l) of_lane[l] = number(view_of_[l]);

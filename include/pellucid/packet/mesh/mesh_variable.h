@@ -46,7 +46,7 @@ class MeshVariable {
   static constexpr bool passes_over_light = false;
 
   explicit MeshVariable(const PellucidMeshJob& job) noexcept
-      : field_(static_cast<const MeshFields*>(job.fields)->channel[0]) {}
+      : field_(seen(job.fields)->channel[0]) {}
 
   /// Whether the data step from tetrahedron to tetrahedron.
   bool steps() const noexcept { return field_.per_cell; }

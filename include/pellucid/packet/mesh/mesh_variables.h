@@ -21,9 +21,7 @@ class MeshVariables {
   static constexpr bool passes_over_light = true;
 
   explicit MeshVariables(const PellucidMeshJob& job) noexcept
-      : fields_(*static_cast<const MeshFields*>(job.fields)),
-        values_(job.values),
-        points_(job.value_points) {
+      : fields_(*seen(job.fields)), values_(job.values), points_(job.value_points) {
     for (int c = 0; c < fields_.channels; ++c) {
       steps_ = steps_ || fields_.channel[c].per_cell;
       value_[c] = T(0);

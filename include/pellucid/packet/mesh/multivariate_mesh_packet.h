@@ -26,7 +26,7 @@ class MultivariateMeshPacket {
 
   MultivariateMeshPacket(const PellucidMeshJob& job, Room& room, int first, int count) noexcept
       : job_(job),
-        mixture_(*static_cast<const NearMixture*>(job.transfer)),
+        mixture_(*seen(job.mixture)),
         transfer_(mixture_.transfer),
         rows_(room.rows),
         first_(first),

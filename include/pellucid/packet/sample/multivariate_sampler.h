@@ -25,9 +25,9 @@ class MultivariateSampler {
   /// Of rays first … first + count - 1 of the job, count <= N.
   MultivariateSampler(const PellucidMultivariateSamplerJob& job, const PacketGrid& grid, int first,
                       int count) noexcept
-      : fields_(*static_cast<const MultichannelGrid*>(job.grid)),
-        primitives_(static_cast<const PrimitiveSet*>(job.primitives)),
-        transfer_(*static_cast<const SampledMultivariate*>(job.transfer)),
+      : fields_(*seen(job.grid)),
+        primitives_(seen(job.primitives)),
+        transfer_(*seen(job.transfer)),
         step_(job.step),
         stop_(job.stop),
         first_(first),

@@ -26,15 +26,15 @@ class PacketSampler {
   /// Of rays first … first + count - 1 of the job, count <= N.
   PacketSampler(const PellucidSamplerJob& job, const PacketGrid& grid, int first,
                 int count) noexcept
-      : transfer_(*static_cast<const SamplerTransfer*>(job.transfer)),
-        table_(*static_cast<const PreintegratedTable*>(job.preintegrated)),
+      : transfer_(*seen(job.transfer)),
+        table_(*seen(job.preintegrated)),
         by_opacity_(job.rule == pellucid_preintegrated),
         step_(job.step),
         stop_(job.stop),
         first_(first),
         count_(count),
         march_(grid, job.grid_and_rays.rays + first, count, job.step),
-        light_(grid, static_cast<const PacketLight*>(job.light), march_) {}
+        light_(grid, seen(job.light), march_) {}
   // The light refers to the rays.
   PacketSampler(const PacketSampler&) = delete;
   PacketSampler& operator=(const PacketSampler&) = delete;

@@ -26,10 +26,8 @@ class GaussianPacket {
   GaussianPacket(const PellucidGaussianPacketJob& job, const PacketGrid& grid) noexcept
       : job_(job),
         rays_(job.grid_and_rays),
-        march_(grid, *static_cast<const MultichannelGrid*>(job.grid),
-               *static_cast<const SteppedMixture*>(job.mixture),
-               static_cast<const PrimitiveSet*>(job.primitives),
-               static_cast<const BlockVariation*>(job.variation), job.waves),
+        march_(grid, *seen(job.grid), *seen(job.stepped), seen(job.primitives), seen(job.variation),
+               job.waves),
         trace_(rays_.depth != 0),
         largest_color_(static_cast<float>(rays_.largest_color)) {
     for (int l = 0; l < N; ++l) {

@@ -57,8 +57,8 @@ class SmoothMarch {
   /// `lengths` is of this march alone while it lasts.
   SmoothMarch(const PellucidPacketJob& job, const PacketGrid& grid, const double (&origin)[3][N],
               const double (&direction)[3][N], StepLengths<N>& lengths) noexcept
-      : transfer_(*static_cast<const SamplerTransfer*>(job.samples)),
-        smooth_(*static_cast<const SmoothBlocks*>(job.smooth)),
+      : transfer_(*seen(job.samples)),
+        smooth_(*seen(job.smooth)),
         grid_(grid),
         samples_(grid),
         lengths_(lengths) {
