@@ -28,6 +28,7 @@ class GridPoints : public LayerPoints {
     block_ = {0, range.begin, range.begin};
     skipped_ = true;
   }
+  bool goes_back() const override { return true; }
   double next_from(double t) override {
     while (skipped_ || !(t < block_.t_end)) {
       if (!blocks_->next(classes_, block_)) {

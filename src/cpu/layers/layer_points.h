@@ -34,8 +34,10 @@ class LayerPoints {
   /// Returns the first position from t on at which the layer may absorb, as far as blocks of its
   /// data tell; infinite: it does not in this range.
   virtual double next_from(double t) = 0;
-  /// Finds what the layer has at t, in the range.
+  /// Finds what the layer has at t, in the range, behind all former ones.
   virtual void find(double t, LayerPoint& point) = 0;
+  /// Returns whether find() also takes places in front of former ones.
+  virtual bool goes_back() const { return false; }
   /// Finds the gradient and the factor's argument, of the point that was found last or before.
   virtual void find_gradients(LayerPoint& point) const = 0;
 };

@@ -167,7 +167,11 @@ SampledPath::SampledPath(const std::vector<ClippedLayer>& layers,
       lights_(lights),
       merge_(layers, lights, largest_color, false),
       on_(layers.size()) {
-  for (const ClippedLayer& layer : layers) layers_.push_back(std::make_unique<LayerOnRay>(layer));
+  for (const ClippedLayer& layer : layers) {
+    layers_.push_back(std::make_unique<LayerOnRay>(layer));
+    by_sides_ = by_sides_ && layers_.back()->points->goes_back() &&
+                layers_.back()->source.look().slices().empty();
+  }
 }
 
 SampledPath::~SampledPath() = default;
@@ -211,7 +215,8 @@ void SampledPath::step_through(const RayPart& part) {
   if (cuts_.empty()) return;
   std::ranges::sort(cuts_);
   const double first = cuts_.front(), last = cuts_.back();
-  if (merge_.has_surfaces()) {
+  const bool by_sides = by_sides_ && merge_.has_surfaces();
+  if (merge_.has_surfaces() && !by_sides) {
     find_surfaces(part);
     for (const Surface& surface : surfaces_) cuts_.push_back(surface.t);
     std::ranges::sort(cuts_);
@@ -233,9 +238,11 @@ void SampledPath::step_through(const RayPart& part) {
     for (; cut < cuts_.size() && cuts_[cut] <= begin; ++cut) {
     }
     for (; cut < cuts_.size() && cuts_[cut] < end; ++cut) {
+      if (by_sides) find_crossings(begin, cuts_[cut]);
       add_step(begin, cuts_[cut]);
       begin = std::max(begin, cuts_[cut]);
     }
+    if (by_sides) find_crossings(begin, end);
     add_step(begin, end);
     begin = end;
     index += 1;
@@ -243,11 +250,82 @@ void SampledPath::step_through(const RayPart& part) {
   while (next_surface_ < surfaces_.size() && !fold_.done()) add_surface(surfaces_[next_surface_++]);
 }
 
+/// Finds the isosurfaces whose sides the ends of a step are on, front to back.
+void SampledPath::find_crossings(double begin, double end) {
+  if (!(begin < end)) return;
+  surfaces_.erase(surfaces_.begin(),
+                  surfaces_.begin() + static_cast<std::ptrdiff_t>(next_surface_));
+  next_surface_ = 0;
+  for (const auto& layer : layers_) {
+    const LayerLook& look = layer->source.look();
+    if (look.isosurfaces().empty() || !layer->holds(begin, end)) continue;
+    LayerPoint front, back, at;
+    layer->points->find(begin, front);
+    layer->points->find(end, back);
+    if (front.function < 0 || back.function < 0) continue;
+    for (const Isosurface& surface : look.isosurfaces()) {
+      const auto channel = static_cast<std::size_t>(surface.channel);
+      const double before = front.value[channel] - surface.value;
+      const double behind = back.value[channel] - surface.value;
+      if (!((before < 0) != (behind < 0))) continue;
+      const double t = crossing(*layer->points, surface, begin, end, before, behind, at);
+      if (at.function < 0) continue;
+      Rgb<double> color = surface.color;
+      if (surface.colors) {
+        color = surface.colors->view<double>()
+                    .evaluate(at.value[static_cast<std::size_t>(surface.color_channel)])
+                    .color;
+      }
+      if (const Reflection<double>* const reflection = look.surface_reflection()) {
+        layer->points->find_gradients(at);
+        color = light_up(*reflection, lights_.data(), static_cast<int>(lights_.size()), at.gradient,
+                         ray_.at(t), -ray_.direction)
+                    .apply(color);
+      }
+      surfaces_.push_back({t, surface.opacity, color});
+    }
+  }
+  std::ranges::sort(surfaces_, {}, &Surface::t);
+}
+
+/// Finds where data cross the value of an isosurface between two places, on whose sides they are by
+/// `before` and `behind`: by four steps of false position.
+double SampledPath::crossing(LayerPoints& points, const Isosurface& surface, double begin,
+                             double end, double before, double behind, LayerPoint& at) const {
+  double t = begin;
+  for (int i = 0; i < 4; ++i) {
+    t = begin + (end - begin) * (before / (before - behind));
+    points.find(t, at);
+    if (at.function < 0) return t;
+    const double here = at.value[static_cast<std::size_t>(surface.channel)] - surface.value;
+    if (here == 0) return t;
+    if ((here < 0) == (before < 0)) {
+      begin = t;
+      before = here;
+    } else {
+      end = t;
+      behind = here;
+    }
+  }
+  return t;
+}
+
 /// Adds the surfaces in front of a step's end, and the step.
 void SampledPath::add_step(double begin, double end) {
   while (next_surface_ < surfaces_.size() && surfaces_[next_surface_].t <= begin) {
     add_surface(surfaces_[next_surface_++]);
   }
+  while (by_sides_ && next_surface_ < surfaces_.size() && surfaces_[next_surface_].t < end &&
+         !fold_.done()) {
+    const Surface next = surfaces_[next_surface_++];
+    add_part(begin, next.t);
+    add_surface(next);
+    begin = next.t;
+  }
+  add_part(begin, end);
+}
+
+void SampledPath::add_part(double begin, double end) {
   if (!(begin < end) || fold_.done()) return;
   const double middle = 0.5 * (begin + end);
   for (std::size_t i = 0; i < layers_.size(); ++i) {

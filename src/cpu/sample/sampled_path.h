@@ -81,7 +81,11 @@ class SampledPath {
   void step_through(const RayPart& part);
   void go_through_cells(const RayPart& part);
   void find_surfaces(const RayPart& part);
+  void find_crossings(double begin, double end);
+  double crossing(LayerPoints& points, const Isosurface& surface, double begin, double end,
+                  double before, double behind, LayerPoint& at) const;
   void add_step(double begin, double end);
+  void add_part(double begin, double end);
   void add_segment(double begin, double end);
   void add_surface(const Surface& surface);
   void add(const SegmentResult<double>& segment, double begin, double end);
@@ -99,6 +103,9 @@ class SampledPath {
   LayerMerge merge_;  ///< for surfaces and tetrahedra
   std::vector<std::unique_ptr<LayerOnRay>> layers_;
   std::vector<OnSegment> on_;
+  /// Whether all layers' points go back, and none has slices: isosurfaces are then looked for where
+  /// samples change their sides, which takes less time than a walk.
+  bool by_sides_ = true;
   // Of the ray:
   Ray<double> ray_{};
   FrontToBackCompositor<double> fold_;
