@@ -61,7 +61,8 @@ std::string lower_case(std::string text) {
 std::string one_line(std::string_view text) {
   std::string line;
   for (const char c : text) {
-    const bool control = (c >= '\0' && c < ' ') || c == '\x7f';
+    const auto byte = static_cast<unsigned char>(c);
+    const bool control = byte < 0x20 || byte == 0x7f;
     if (control && (line.empty() || line.back() == ' ')) continue;
     line += control ? ' ' : c;
   }
