@@ -245,10 +245,11 @@ class PngReader : public PageReader {
       if (stop == std::string_view::npos) break;
       rest = rest.substr(stop + 1);
     }
-    const auto first = words.size() > 2 ? number_of(words[1]) : std::nullopt;
-    const auto second = words.size() > 2 ? number_of(words[2]) : std::nullopt;
     if (head[8] != 0 || head[9] != 2) return refuse("is no line");
-    if (!first || !second || *second == 0) return refuse("has parameters that are no numbers");
+    constexpr const char* no_numbers = "has parameters that are no numbers";
+    if (words.size() < 3) return refuse(no_numbers);
+    const auto first = number_of(words[1]), second = number_of(words[2]);
+    if (!first || !second || *second == 0) return refuse(no_numbers);
     // Others are rounded to whole numbers in between.
     if (std::abs(span) != most) return refuse("is of other numbers than those that are stored");
     if (format_.samples != 1) return refuse("is of colors");

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <optional>
 
 #include "grid.h"
 #include "vectors.h"
@@ -36,23 +35,24 @@ Real3 Grid::smooth_gradient(const Index& index) const {
     const std::size_t i = index[a];
     // The neighbour's slope and distance, if there is a neighbour.
     struct Side {
-      Real slope, width;
+      bool is_there = false;
+      Real slope{}, width{};
     };
-    const auto side = [&](std::size_t other) -> std::optional<Side> {
+    const auto side = [&](std::size_t other) -> Side {
       Index neighbour = index;
       neighbour[a] = other;
       const Real there = value_at(neighbour);
-      if (std::isnan(there)) return std::nullopt;
-      return Side{(there - here) / (at[other] - at[i]), std::abs(at[other] - at[i])};
+      if (std::isnan(there)) return {};
+      return {true, (there - here) / (at[other] - at[i]), std::abs(at[other] - at[i])};
     };
-    const std::optional<Side> below = i > 0 ? side(i - 1) : std::nullopt;
-    const std::optional<Side> above = i + 1 < at.size() ? side(i + 1) : std::nullopt;
-    if (below && above) {
+    const Side below = i > 0 ? side(i - 1) : Side();
+    const Side above = i + 1 < at.size() ? side(i + 1) : Side();
+    if (below.is_there && above.is_there) {
       // Of the parabola through the three values: the nearer side's slope counts more.
-      slope[a] = (below->slope * above->width + above->slope * below->width) /
-                 (below->width + above->width);
-    } else if (below || above) {
-      slope[a] = below ? below->slope : above->slope;
+      slope[a] =
+          (below.slope * above.width + above.slope * below.width) / (below.width + above.width);
+    } else if (below.is_there || above.is_there) {
+      slope[a] = below.is_there ? below.slope : above.slope;
     }
   }
   return gradient_in_world(slope);
