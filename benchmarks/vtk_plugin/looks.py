@@ -6,7 +6,7 @@
         benchmarks/vtk_plugin/looks.py [--frames N] [--size N] [VOLUME.nii.gz...]
 
 `vtkSmartVolumeMapper` and `vtkFixedPointVolumeRayCastMapper` have VTK's defaults, ours holds 1/512,
-all on the same cores in one run, frame by frame in turn. The volumes are the brain MRI of the Debian
+on the same cores in one run, frame by frame in turn. The volumes are the brain MRI of the Debian
 package mricron-data and those that are given. Prints a table in Markdown: medians of the frames,
 ours over each of VTK's, and how far each picture is from ours at 1/4096. A look that a mapper
 leaves out has no time.

@@ -174,7 +174,7 @@ def test_sampling_methods(program, ball):
     scene = pellucid.scene_of(ball, look="haze")
     scene.integration = pellucid.Integration(method="midpoint", step=0.25)
     image = render(scene)
-    expected = program.render(ball, "--method", "midpoint", "--step", "0.25")
+    expected = program.render(ball, "--look", "haze", "--method", "midpoint", "--step", "0.25")
     assert image.error is None and image.tolerance is None
     assert numpy.array_equal(image.rgba, expected.rgba)
 
