@@ -10,8 +10,8 @@ namespace pellucid {
 Scene sampled_scene(Scene scene);
 
 /// Whether pictures that have to be there in time are better sampled: the exact method may take as
-/// long or less, and an exact picture in time is better than a sampled one. Learns from the pictures
-/// of a program.
+/// long or less, and an exact picture in time is better than a sampled one. Learns from the
+/// pictures of a program.
 class MovingPictures {
  public:
   /// Notes how long pixels of a picture took, side by side or apart.
