@@ -122,8 +122,6 @@ def main():
                      f"{median['ours'] / median['fixed']:.2f}",
                      *(f"{off[key]} / 255" for key in MAPPERS)]
             print("| " + " | ".join(cells) + " |", flush=True)
-            for one in stages.values():
-                one.window.Finalize()
     return 0
 
 

@@ -81,7 +81,7 @@ std::unique_ptr<const RayTracer> make_packet_sampler(const TracerTask&) {
 }
 
 SamplingPlan::SamplingPlan(const std::vector<ClippedLayer>&, const Integration&, double, bool)
-    : rule_(SegmentRule::midpoint), by_cells_(false), step_(0), stop_(0), depth_(false) {
+    : rule_(SegmentRule::midpoint), by_cells_(false), stop_(0), depth_(false) {
   throw left_out("what samples rays");
 }
 
@@ -94,7 +94,7 @@ SampledPath::SampledPath(const std::vector<ClippedLayer>& layers,
 
 SampledPath::~SampledPath() = default;
 
-RayResult SampledPath::sample(const RayPart&) {
+RayResult SampledPath::sample(const RayPart&, const std::stop_token&) {
   throw left_out("what samples rays");
 }
 

@@ -107,7 +107,7 @@ class LayerCheck {
   template <class Data, class Function>
   void require(const Data& data, const Function& function, const char* name,
                const char* function_name) const {
-    if (data && function) return;
+    if (data != nullptr && function != nullptr) return;
     fail(std::string(name) + " and " + function_name + " are needed; set both before rendering");
   }
   void count(const MultivariateTransferFunction& function, int channels) const {

@@ -85,5 +85,29 @@ TEST(SampledFrames, TendToTheExactOne) {
   EXPECT_EQ(sums.size(), std::size(methods));
 }
 
+/// Steps are those of the finest layer that is there: rays end, however fine another one is.
+TEST(SampledFrames, EndBesideAMuchFinerLayer) {
+  const auto layer = [](double size) {
+    const auto volume = scenes::make_volume<float>(
+        scenes::grid_description({5, 5, 5}, {-size, -size, -size},
+                                 {0.5 * size, 0.5 * size, 0.5 * size}),
+        [](int i, int j, int k) { return 0.1F * static_cast<float>(i + j + k); });
+    return Layer{VolumeContent{volume, scenes::transfer({{0, 0.5, {1, 0.5, 0}}}), nullptr}};
+  };
+  Scene scene;
+  scene.layers = {layer(1)};
+  scene.camera.position = {0.3, 0.2, 5};
+  scene.camera.focal_point = {0, 0, 0};
+  scene.camera.vertical_angle = 30;
+  scene.size = {6, 6};
+  scene.integration.method = Method::midpoint;
+  const Image alone = render(scene);
+  for (const double size : {1e-3, 1e-12, 1e-25}) {
+    scene.layers.resize(1);
+    scene.layers.push_back(layer(size));
+    EXPECT_LT(square_difference(render(scene), alone), 1e-6) << size;
+  }
+}
+
 }  // namespace
 }  // namespace pellucid

@@ -87,8 +87,8 @@ inline constexpr double default_tolerance = 1.0 / 512;
 struct Integration {
   Method method = Method::exact;
   Precision precision = Precision::automatic;
-  /// Of the sampling methods, in voxels of the finest layer: Volume::voxel_size(), of a mesh
-  /// voxel_of() (scene/layer.h).
+  /// Of the sampling methods, in voxels of the finest layer that is there: Volume::voxel_size(), of
+  /// a mesh voxel_of() (scene/layer.h).
   double step = 0.5;
   /// Largest error of a pixel of the exact method, in each channel of premultiplied linear RGBA.
   /// render() throws Error if it is outside of the limits above.

@@ -181,7 +181,7 @@ class SceneTracer : public RayTracer {
     results.reserve(parts.size());
     for (const RayPart& part : parts) {
       if (options.stop.stop_requested()) break;
-      results.push_back(path.sample(part));
+      results.push_back(path.sample(part, options.stop));
     }
     results.resize(parts.size());
     return results;

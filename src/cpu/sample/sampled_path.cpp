@@ -88,20 +88,20 @@ SamplingPlan::SamplingPlan(const std::vector<ClippedLayer>& layers, const Integr
           takes_cells(integration.method) &&
           std::ranges::all_of(
               layers, [](const ClippedLayer& layer) { return is_mesh(layer.setup->layer()); })),
-      step_(infinity),
       stop_(stop_tolerance<double>() / std::max(largest_color, 1.0)),
       depth_(depth) {
   for (const ClippedLayer& layer : layers) {
-    step_ = std::min(step_, integration.step * voxel_of_steps(layer.setup->layer()));
+    steps_.push_back(integration.step * voxel_of_steps(layer.setup->layer()));
   }
   if (rule_ == SegmentRule::partial) psi_ = psi_table();
   if (rule_ != SegmentRule::preintegrated) return;
   for (const ClippedLayer& layer : layers) {
     const Interval<double> range = range_of(layer.setup->layer());
+    const double step = steps_[tables_.size()];
     auto& of_layer = tables_.emplace_back();
     for (const MultivariateTransfer<double>& function : layer.setup->source().functions()) {
       of_layer.push_back(std::make_unique<const PreintegratedStorage>(
-          function.table[0].table, range.begin, range.end, step_, ParallelFor{}));
+          function.table[0].table, range.begin, range.end, step, ParallelFor{}));
     }
   }
 }
@@ -176,8 +176,9 @@ SampledPath::SampledPath(const std::vector<ClippedLayer>& layers,
 
 SampledPath::~SampledPath() = default;
 
-RayResult SampledPath::sample(const RayPart& part) {
+RayResult SampledPath::sample(const RayPart& part, const std::stop_token& stop) {
   ray_ = part.ray;
+  stop_ = &stop;
   fold_ = FrontToBackCompositor<double>(plan_.stop());
   segments_ = 0;
   sampled_to_ = -1;
@@ -200,6 +201,11 @@ RayResult SampledPath::sample(const RayPart& part) {
   return result;
 }
 
+/// Returns whether what is behind does not matter, or nobody wants to know.
+bool SampledPath::is_over() const {
+  return fold_.done() || (segments_ % 1024 == 1023 && stop_->stop_requested());
+}
+
 void SampledPath::find_surfaces(const RayPart& part) {
   merge_.start(part);
   for (MergedPart next; merge_.next(next);) {
@@ -210,24 +216,30 @@ void SampledPath::find_surfaces(const RayPart& part) {
 }
 
 void SampledPath::step_through(const RayPart& part) {
-  cuts_.clear();
-  for (const auto& layer : layers_) layer->start(part, cuts_);
-  if (cuts_.empty()) return;
-  std::ranges::sort(cuts_);
-  const double first = cuts_.front(), last = cuts_.back();
-  const bool by_sides = by_sides_ && merge_.has_surfaces();
-  if (merge_.has_surfaces() && !by_sides) {
-    find_surfaces(part);
-    for (const Surface& surface : surfaces_) cuts_.push_back(surface.t);
-    std::ranges::sort(cuts_);
+  ends_.clear();
+  for (const auto& layer : layers_) layer->start(part, ends_);
+  std::ranges::sort(ends_);
+  if (merge_.has_surfaces() && !by_sides_) find_surfaces(part);
+  for (std::size_t i = 0; i + 1 < ends_.size() && !is_over(); ++i) {
+    const double begin = ends_[i], end = ends_[i + 1];
+    if (!(begin < end)) continue;
+    double step = infinity;
+    for (std::size_t k = 0; k < layers_.size(); ++k) {
+      if (layers_[k]->holds(begin, end)) step = std::min(step, plan_.step(k));
+    }
+    // Positions do not tell shorter ones.
+    if (step < infinity) step_between(begin, end, std::max(step, 1e-13 * end));
   }
-  const double step = plan_.step();
+  while (next_surface_ < surfaces_.size() && !fold_.done()) add_surface(surfaces_[next_surface_++]);
+}
+
+/// Steps through a part of the ray on which the same layers are present.
+void SampledPath::step_between(double first, double last, double step) {
   double index = 0;
-  std::size_t cut = 0;
-  for (double begin = first; begin < last && !fold_.done();) {
+  for (double begin = first; begin < last && !is_over();) {
     double next = next_surface_ < surfaces_.size() ? surfaces_[next_surface_].t : infinity;
     for (const auto& layer : layers_) next = std::min(next, layer->next_from(begin));
-    if (!(next <= last)) break;
+    if (!(next < last)) break;
     // Positions are multiples of the step, computed from their index, so that they do not drift.
     const double skipped = std::floor((next - first) / step);
     if (skipped > index) {
@@ -235,19 +247,11 @@ void SampledPath::step_through(const RayPart& part) {
       begin = std::max(begin, first + index * step);
     }
     const double end = std::min(first + (index + 1) * step, last);
-    for (; cut < cuts_.size() && cuts_[cut] <= begin; ++cut) {
-    }
-    for (; cut < cuts_.size() && cuts_[cut] < end; ++cut) {
-      if (by_sides) find_crossings(begin, cuts_[cut]);
-      add_step(begin, cuts_[cut]);
-      begin = std::max(begin, cuts_[cut]);
-    }
-    if (by_sides) find_crossings(begin, end);
+    if (by_sides_ && merge_.has_surfaces()) find_crossings(begin, end);
     add_step(begin, end);
     begin = end;
     index += 1;
   }
-  while (next_surface_ < surfaces_.size() && !fold_.done()) add_surface(surfaces_[next_surface_++]);
 }
 
 /// Finds the isosurfaces whose sides the ends of a step are on, front to back.
@@ -315,8 +319,7 @@ void SampledPath::add_step(double begin, double end) {
   while (next_surface_ < surfaces_.size() && surfaces_[next_surface_].t <= begin) {
     add_surface(surfaces_[next_surface_++]);
   }
-  while (by_sides_ && next_surface_ < surfaces_.size() && surfaces_[next_surface_].t < end &&
-         !fold_.done()) {
+  while (next_surface_ < surfaces_.size() && surfaces_[next_surface_].t < end && !fold_.done()) {
     const Surface next = surfaces_[next_surface_++];
     add_part(begin, next.t);
     add_surface(next);
@@ -353,7 +356,7 @@ void SampledPath::add_part(double begin, double end) {
 
 void SampledPath::go_through_cells(const RayPart& part) {
   merge_.start(part);
-  for (MergedPart next; !fold_.done() && merge_.next(next);) {
+  for (MergedPart next; !is_over() && merge_.next(next);) {
     if (next.kind == MergedPart::Kind::surface) {
       add_surface({next.range.begin, next.opacity, next.color});
     }
@@ -486,9 +489,9 @@ void SampledPath::add_data(std::size_t layer, int number, const double* front, c
                            double begin, double end, DepthWeightedColor<double>& sum) {
   const LayerSource& source = layers_[layer]->source;
   const double length = end - begin;
-  DepthAndColor of = depth_and_color(
-      data_segment(plan_.rule(), plan_.table(layer, number), length / plan_.step(),
-                   source.functions()[static_cast<std::size_t>(number)], front, back, length));
+  DepthAndColor of = depth_and_color(data_segment(
+      plan_.rule(), plan_.table(layer, number), std::min(length / plan_.step(layer), 1.0),
+      source.functions()[static_cast<std::size_t>(number)], front, back, length));
   if (!(of.depth > 0)) return;
   if (source.look().is_lit()) {
     // A middle in vacuum has no light of its own.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <stop_token>
 #include <vector>
 
 #include "layers/clipped_layer.h"
@@ -26,7 +27,8 @@ class SamplingPlan {
   SegmentRule rule() const noexcept { return rule_; }
   /// Returns whether segments are those of the meshes' tetrahedra, in place of steps.
   bool by_cells() const noexcept { return by_cells_; }
-  double step() const noexcept { return step_; }  ///< world length
+  /// Returns the step of a layer by itself, world length.
+  double step(std::size_t layer) const noexcept { return steps_[layer]; }
   /// Returns the transparency at which a ray ends.
   double stop() const noexcept { return stop_; }
   /// Returns whether the depth of half opacity is asked for.
@@ -41,15 +43,16 @@ class SamplingPlan {
  private:
   SegmentRule rule_;
   bool by_cells_;
-  double step_, stop_;
+  double stop_;
   bool depth_;
+  std::vector<double> steps_;  ///< of each layer
   PsiTable psi_{};
   std::vector<std::vector<std::unique_ptr<const PreintegratedStorage>>> tables_;
 };
 
 /// Samples rays through any layers by any rule, for comparison with the general path and for
-/// pictures while something moves. In: the points of layers (layer_points.h), in steps of one
-/// length, which are cut where layers begin or end and at surfaces; or the stretches of meshes.
+/// pictures while something moves. In: the points of layers (layer_points.h), in steps of the
+/// finest layer there, cut where layers begin or end and at surfaces; or the stretches of meshes.
 /// Out: what a ray gathers, of unknown error. Used by one thread.
 class SampledPath {
  public:
@@ -61,7 +64,8 @@ class SampledPath {
   SampledPath& operator=(const SampledPath&) = delete;
   ~SampledPath();
 
-  RayResult sample(const RayPart& part);
+  /// After a request to stop the result does not matter.
+  RayResult sample(const RayPart& part, const std::stop_token& stop);
 
  private:
   /// A layer on a segment.
@@ -78,7 +82,9 @@ class SampledPath {
     double begin, end, depth;
   };
 
+  bool is_over() const;
   void step_through(const RayPart& part);
+  void step_between(double first, double last, double step);
   void go_through_cells(const RayPart& part);
   void find_surfaces(const RayPart& part);
   void find_crossings(double begin, double end);
@@ -110,8 +116,9 @@ class SampledPath {
   Ray<double> ray_{};
   FrontToBackCompositor<double> fold_;
   long segments_ = 0;
-  double sampled_to_ = 0;  ///< the end of the last segment, to which `back` belongs
-  std::vector<double> cuts_;
+  double sampled_to_ = 0;     ///< the end of the last segment, to which `back` belongs
+  std::vector<double> ends_;  ///< where layers begin and end
+  const std::stop_token* stop_ = nullptr;
   std::vector<Surface> surfaces_;
   std::size_t next_surface_ = 0;
   std::vector<Gathered> gathered_;

@@ -49,11 +49,7 @@ struct MixtureLanes {
       const auto along = gaussian_along(g, part + g.first);
       const F peak = F(g.peak) * length;
       const F bound = peak * exp(-min(along.lower(), F(80)));
-      const M matters = held & (bound > F(negligible));
-      result.off += select(held & !matters, bound, F(0));
-      if (none(matters)) continue;
-      near.add(matters, i);
-      // |p|² is off by 2 |p| times what p is, and rounded.
+      // What the places, p = K (v - c), are off by.
       F place(0);
       for (int row = 0; row < g.rows; ++row) {
         for (int c = 0; c < g.channels; ++c) {
@@ -62,8 +58,16 @@ struct MixtureLanes {
           place += F(k) * (rounding[g.first + c] + F(2 * unit * center));
         }
       }
+      // Where that is no small part of a width, no bound here holds.
+      const M known = place < F(1.0f / 64);
+      result.off += select(held & !known, F(1e30f), F(0));
+      const M matters = held & known & (bound > F(negligible));
+      result.off += select(held & known & !matters, bound, F(0));
+      if (none(matters)) continue;
+      near.add(matters, i);
+      // |p|² is off by 2 |p| times that, and rounded; a quarter more for what is of second order.
       const F upper = min(along.upper(), F(80));
-      const F moved = F(2) * (sqrt(upper) + place) * place + F(32 * unit) * (F(1) + upper);
+      const F moved = F(2.5f) * (sqrt(upper) + place) * place + F(32 * unit) * (F(1) + upper);
       result.off += select(matters, bound * moved, F(0));
       result.most += select(matters, bound, F(0));
       result.least += select(matters, peak * exp(-upper), F(0));
