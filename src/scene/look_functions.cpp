@@ -78,8 +78,7 @@ class Levels {
   }
   std::vector<double> take() {
     std::ranges::sort(levels_);
-    const auto same = std::ranges::unique(levels_);
-    levels_.erase(same.begin(), same.end());
+    levels_.erase(std::unique(levels_.begin(), levels_.end()), levels_.end());
     return std::move(levels_);
   }
 
