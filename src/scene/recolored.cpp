@@ -45,7 +45,7 @@ TransferFunction with_colors(const TransferFunction& function, const ColorMap& m
                              const std::array<double, 2>& range) {
   check(range);
   if (map.empty()) throw Error("color map: there is no point");
-  const auto [first, last] = range;
+  const double first = range[0], last = range[1];
   const auto position_of = [&](double value) {
     return (value / 2 - first / 2) / (last / 2 - first / 2);
   };
