@@ -44,11 +44,11 @@ void write_cell(const StructuredWalk<double>::Step& cell, Interval<double> range
 bool write_gradient(const LayerLook& look, const LayerStretch& stretch, Interval<double> range,
                     float* to) {
   if (stretch.gradient_error > 0) return false;
-  const auto [from, end] = share_of({stretch.begin, stretch.end}, range);
-  const bool whole = from <= 0 && end >= 1;
+  const Interval<double> share = share_of({stretch.begin, stretch.end}, range);
+  const bool whole = share.begin <= 0 && share.end >= 1;
   double largest = 0;
   const auto put = [&](const CubicBernstein<double>& f, float* at) {
-    const CubicBernstein<double> there = whole ? f : restrict_to(f, from, end);
+    const CubicBernstein<double> there = whole ? f : restrict_to(f, share.begin, share.end);
     for (int b = 0; b < 4; ++b) {
       at[b] = static_cast<float>(there.b[b]);
       largest = std::max(largest, std::fabs(there.b[b]));

@@ -61,11 +61,12 @@ CubicBernstein<double> MeshGradient::linear(std::int32_t tetrahedron, const doub
   for (int i = 0; i < 4; ++i) point[i] = mesh_.point[t[i]];
   double volume = 0;
   const Vec3<double> slope = gradient_of(point, corner, volume);
-  const auto [least, most] = std::minmax({corner[0], corner[1], corner[2], corner[3]});
+  const auto range_of_corners = std::minmax({corner[0], corner[1], corner[2], corner[3]});
   const auto at = [&](double along) {
     const Vec3<double> place = ray.origin + ray.direction * along;
     // Flat tetrahedra leave the range of their corners.
-    return std::clamp(corner[0] + dot(slope, place - point[0]), least, most);
+    return std::clamp(corner[0] + dot(slope, place - point[0]), range_of_corners.first,
+                      range_of_corners.second);
   };
   return as_cubic(LinearBernstein<double>{{at(range.begin), at(range.end)}});
 }

@@ -31,10 +31,11 @@ class MeshProjector : public LayerProjector {
 
   RayValue project(const Ray<double>& ray, double end,
                    ProjectionWorkspace& workspace) const override {
-    auto& [hits, spans] = static_cast<MeshWorkspace&>(workspace);
+    auto& own = static_cast<MeshWorkspace&>(workspace);
+    auto& spans = own.spans;
     ValueGatherer gatherer(projection_, data_.minimum, data_.maximum);
     spans.clear();
-    const MeshRay found = hits.find(mesh_, ray);
+    const MeshRay found = own.hits.find(mesh_, ray);
     Interval<double> inside = found.extent();
     for_each_mesh_span(mesh_, fields_.view(), found.view, found.hits, found.count,
                        [&](const MeshSpan& span) {
