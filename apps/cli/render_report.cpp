@@ -20,32 +20,12 @@ std::string method_text(const RenderArguments& arguments, const Integration& int
   return arguments.reference ? "reference" : std::string(method_name(integration.method));
 }
 
-/// Whether a method that samples does so in packets, in float: one plain layer (sampled_path.h has
-/// the others).
-bool samples_packets(const Scene& scene) {
-  const Layer* const layer = only_layer(scene);
-  if (layer == nullptr || is_lit(*layer) || !layer->clips.empty() || !scene.clips.empty()) {
-    return false;
-  }
-  const Method method = scene.integration.method;
-  const auto* const volume = std::get_if<VolumeContent>(&layer->content);
-  if (volume != nullptr) {
-    return !volume->mask && (method == Method::midpoint || method == Method::preintegrated);
-  }
-  return std::holds_alternative<ChannelsContent>(layer->content) && method == Method::midpoint;
-}
-
-/// The sampling methods know no tolerance: automatic is float for them where they have packets, and
-/// else they are in double alone.
-std::string precision_text(const RenderArguments& arguments, const Scene& scene) {
-  const Integration& integration = scene.integration;
-  const bool exact = integration.method == Method::exact;
-  const bool always_double = !exact && !samples_packets(scene);
-  if (arguments.reference || always_double || integration.precision == Precision::float64) {
-    return "double";
-  }
-  if (integration.precision == Precision::float32) return "float";
-  return exact ? "automatic" : "float";
+std::string precision_text(const RenderArguments& arguments, const Integration& integration,
+                           const RenderReport& report) {
+  if (arguments.reference || integration.precision == Precision::float64) return "double";
+  // The sampling methods know no tolerance: of them, packets alone are in float.
+  if (integration.method != Method::exact) return report.sampled_in_float ? "float" : "double";
+  return integration.precision == Precision::float32 ? "float" : "automatic";
 }
 
 std::string grade_text(Grade grade) {
@@ -67,12 +47,7 @@ std::vector<NamedCount> by_rule(const RuleCounts& spans) {
 }
 
 bool has_step(const RenderArguments& arguments, const Scene& scene) {
-  const Method method = scene.integration.method;
-  const bool in_cells =
-      takes_cells(method) && std::ranges::all_of(scene.layers, [](const Layer& layer) {
-        return !layer.visible || std::holds_alternative<MeshContent>(layer.content);
-      });
-  return !arguments.reference && method != Method::exact && !in_cells;
+  return !arguments.reference && scene.integration.method != Method::exact && !takes_cells(scene);
 }
 
 Json channel_json(const std::string& name, const std::string& unit, const VolumeData& values,
@@ -186,7 +161,7 @@ void add_metadata(const RenderArguments& arguments, const PreparedScene& prepare
   metadata["pellucid.version"] = PELLUCID_VERSION_STRING;
   metadata["pellucid.source"] = source_text(arguments);
   metadata["pellucid.method"] = method_text(arguments, integration);
-  metadata["pellucid.precision"] = precision_text(arguments, prepared.scene);
+  metadata["pellucid.precision"] = precision_text(arguments, integration, report);
   if (const double error = approximation_error(prepared.scene); error > 0) {
     metadata["pellucid.transfer_function_error"] = fmt::format("{}", error);
   }
@@ -328,7 +303,7 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   json["size"] = {scene.size.width, scene.size.height};
   json["method"] = method_text(arguments, scene.integration);
   json["step"] = has_step(arguments, scene) ? Json(scene.integration.step) : Json();
-  json["precision"] = precision_text(arguments, scene);
+  json["precision"] = precision_text(arguments, scene.integration, report);
   json["samples"] = scene.samples;
   const bool exact = prepared.knows_its_error(arguments);
   const auto of_exact = [&](const Json& value) { return exact ? value : Json(); };

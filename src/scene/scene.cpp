@@ -267,6 +267,14 @@ bool takes_cells(Method method) noexcept {
          method == Method::linear || method == Method::kniss || method == Method::gaussian;
 }
 
+bool takes_cells(const Scene& scene) noexcept {
+  return takes_cells(scene.integration.method) &&
+         std::ranges::all_of(scene.layers, [](const Layer& layer) {
+           return !layer.visible || layer.projection ||
+                  std::holds_alternative<MeshContent>(layer.content);
+         });
+}
+
 void check_integration(const Scene& scene) {
   if (scene.backdrop) check_backdrop(scene);
   if (scene.samples < 1 || scene.samples > largest_samples) {

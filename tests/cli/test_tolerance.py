@@ -254,8 +254,11 @@ class Tolerance(ProgramTest):
         for wrong in ("single", "auto", "half", ""):
             self.fail_with("--precision", *FIELD, "-o", "a.png", f"--precision={wrong}", code=2)
         # A sampling method knows no tolerance to choose by.
-        report = self.report(*FIELD, "-o", "a.exr", "--method", "midpoint")
+        report = self.report(*FIELD, "-o", "a.png", "--method", "midpoint")
         self.assertEqual(report["precision"], "float")
+        # Packets that sample know no depth: rays go one by one, in double.
+        report = self.report(*FIELD, "-o", "a.exr", "--method", "midpoint")
+        self.assertEqual(report["precision"], "double")
         self.succeed(*FIELD, "-o", "b.exr", "--method", "midpoint", "--precision", "float")
         self.assertEqual(self.read("a.exr"), self.read("b.exr"))
 

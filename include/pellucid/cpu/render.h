@@ -97,8 +97,9 @@ struct RenderReport {
   int threads = 0;
   /// What was done where, in words, if RenderOptions::device is not the CPU; else empty.
   std::string device;
-  std::uint64_t rays = 0;   ///< traced rays
-  std::uint64_t cells = 0;  ///< cells visited (exact) or samples taken (the others)
+  std::uint64_t rays = 0;         ///< traced rays
+  std::uint64_t cells = 0;        ///< cells visited (exact) or samples taken (the others)
+  bool sampled_in_float = false;  ///< whether whole rays were sampled in packets, in binary32
 
   // The following members are set by the exact method only.
   double largest_error = 0;                 ///< largest error bound or estimate of any pixel

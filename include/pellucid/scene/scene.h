@@ -120,6 +120,10 @@ struct Scene {
   std::shared_ptr<const Image> backdrop{};
 };
 
+/// Returns whether the scene's method has the tetrahedra of meshes for its segments: takes_cells()
+/// of the method, and all visible layers that are not projected are meshes.
+bool takes_cells(const Scene& scene) noexcept;
+
 /// Throws Error unless there is a layer and every layer passes check_layer().
 void check_data(const Scene& scene);
 /// Returns the corners of a box around the data: of a single visible layer its world_corners(), of

@@ -135,6 +135,8 @@ Image render_frame(const Scene& scene, const RenderOptions& options, int threads
   Image image = make_image(scene.size, options);
   local.pixels = image.pixels.size();
   local.setup_seconds = seconds();
+  local.sampled_in_float = scene.integration.method != Method::exact && frame.only_layer &&
+                           frame.only_layer->fast() != nullptr;
   const std::string reason = device ? reason_for_cpu(frame, options) : "";
   if (device && reason.empty()) {
     render_on_device(frame, options, *device, image, local);
