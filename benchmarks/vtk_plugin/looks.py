@@ -15,13 +15,12 @@ import argparse
 import os
 import statistics
 import sys
-import time
 
 import vtkmodules.all as vtk
 
 import pellucid.vtk
 from stage import BRAIN, Stage
-from turning import look, read
+from turning import frame, look, read
 
 
 def unlit(stage, data):
@@ -82,15 +81,6 @@ def stage_of(name, data, change, size):
     change(made, data)
     made.aim(0, 15)
     return made
-
-
-def frame(one):
-    one.camera.Azimuth(7)
-    one.renderer.ResetCameraClippingRange()
-    start = time.perf_counter()
-    one.window.Render()
-    one.window.WaitForCompletion()
-    return time.perf_counter() - start
 
 
 def main():

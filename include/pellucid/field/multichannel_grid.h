@@ -22,17 +22,21 @@ struct MultichannelGrid {
                         [&](const auto* values) noexcept { return body(grid_of(values)); });
   }
 
-  /// Computes the values at a position in grid coordinates, clamped into the box. Returns false in
-  /// vacuum.
+  /// Computes the values at a place. Returns false in vacuum.
   template <class T>
-  PELLUCID_HD bool sample(Vec3<double> position_grid, T* values) const noexcept {
+  PELLUCID_HD bool sample(const GridPlace<T>& place, T* values) const noexcept {
     T sum = T(0);
     for (int c = 0; c < channels; ++c) {
-      values[c] = visit_channel(
-          c, [&](const auto& grid) noexcept { return sample_value<T>(grid, position_grid); });
+      values[c] =
+          visit_channel(c, [&](const auto& grid) noexcept { return sample_value<T>(grid, place); });
       sum += values[c];
     }
     return !is_nan(sum);
+  }
+  /// Computes the same at a position in grid coordinates, clamped into the box.
+  template <class T>
+  PELLUCID_HD bool sample(Vec3<double> position_grid, T* values) const noexcept {
+    return sample(place_in_grid<T>(axis, position_grid), values);
   }
 
  private:

@@ -44,7 +44,7 @@ bool is_mixture(const LayerSource& source) {
   if (source.functions().size() != 1) return false;
   const MultivariateTransfer<double>& function = source.functions()[0];
   if (function.gaussians.count == 0 || function.tables > 0) return false;
-  const auto suits = [](double x) { return x == 0 || is_moderate(std::fabs(x)); };
+  const auto suits = [](double x) { return has_moderate_square(std::fabs(x)); };
   for (int i = 0; i < function.gaussians.count; ++i) {
     const Gaussian<double>& g = function.gaussians.primitive[i];
     for (int c = 0; c < g.channels; ++c) {

@@ -297,9 +297,7 @@ class VolumePoints : public GridPoints {
 
   void find(double t, LayerPoint& point) override {
     point.place = place(t);
-    point.value[0] = source_.grid().visit_channel(
-        0, [&](const auto& grid) { return sample_value<double>(grid, point.place); });
-    point.function = std::isnan(point.value[0]) ? -1 : 0;
+    point.function = source_.grid().sample(point.place, point.value) ? 0 : -1;
     if (point.function == 0 && source_.labels() != nullptr) {
       const Vec3<double> here = position(t);
       int cell[3];
@@ -425,14 +423,7 @@ class ChannelsPoints : public GridPoints {
 
   void find(double t, LayerPoint& point) override {
     point.place = place(t);
-    const MultichannelGrid& grid = source_.grid();
-    double sum = 0;
-    for (int c = 0; c < grid.channels; ++c) {
-      point.value[c] = grid.visit_channel(
-          c, [&](const auto& of) { return sample_value<double>(of, point.place); });
-      sum += point.value[c];
-    }
-    point.function = std::isnan(sum) ? -1 : 0;
+    point.function = source_.grid().sample(point.place, point.value) ? 0 : -1;
   }
   void find_gradients(LayerPoint& point) const override {
     source_.gradients().find(point);

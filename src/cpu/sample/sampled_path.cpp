@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "layers/clip_intervals.h"
-#include "pellucid/render/sample_ray.h"
-#include "psi_table_storage.h"
 
 namespace pellucid {
 namespace {
@@ -15,58 +14,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Beyond this depth, and at infinite ones, nothing is seen.
 constexpr double opaque_depth = 700;
-
-SegmentRule rule_of(Method method) {
-  switch (method) {
-    case Method::rectangle:
-      return SegmentRule::rectangle;
-    case Method::taylor:
-      return SegmentRule::taylor;
-    case Method::midpoint:
-    case Method::homogeneous:
-      return SegmentRule::midpoint;
-    case Method::trapezoid:
-    case Method::average:
-      return SegmentRule::trapezoid;
-    case Method::simpson:
-      return SegmentRule::simpson;
-    case Method::partial:
-      return SegmentRule::partial;
-    case Method::preintegrated:
-      return SegmentRule::preintegrated;
-    case Method::kniss:
-      return SegmentRule::kniss;
-    case Method::gaussian:
-      return SegmentRule::gaussian;
-    case Method::linear:
-    case Method::exact:
-      break;
-  }
-  return SegmentRule::linear;
-}
-
-bool is_mesh(const Layer& layer) {
-  return std::holds_alternative<MeshContent>(layer.content);
-}
-
-double voxel_of_steps(const Layer& layer) {
-  const Volume* const volume = grid_of(layer);
-  return volume != nullptr ? volume->voxel_size() : voxel_of(layer);
-}
-
-/// Least and largest value of a layer's first channel.
-Interval<double> range_of(const Layer& layer) {
-  if (const auto* const mesh = std::get_if<MeshContent>(&layer.content)) {
-    const auto& data = mesh->mesh->statistics(0);
-    return {data.minimum, data.maximum};
-  }
-  if (const auto* const own = std::get_if<SourceContent>(&layer.content)) {
-    const StretchSource::Variable& variable = own->source->description().variables[0];
-    return {variable.minimum, variable.maximum};
-  }
-  const VolumeStatistics& data = grid_of(layer)->statistics();
-  return {data.minimum, data.maximum};
-}
 
 /// A segment's depth and the color of which its radiance is made.
 struct DepthAndColor {
@@ -81,31 +28,6 @@ DepthAndColor depth_and_color(const SegmentResult<double>& segment) {
 
 }  // namespace
 
-SamplingPlan::SamplingPlan(const std::vector<ClippedLayer>& layers, const Integration& integration,
-                           double largest_color, bool depth)
-    : rule_(rule_of(integration.method)),
-      by_cells_(
-          takes_cells(integration.method) &&
-          std::ranges::all_of(
-              layers, [](const ClippedLayer& layer) { return is_mesh(layer.setup->layer()); })),
-      stop_(stop_tolerance<double>() / std::max(largest_color, 1.0)),
-      depth_(depth) {
-  for (const ClippedLayer& layer : layers) {
-    steps_.push_back(integration.step * voxel_of_steps(layer.setup->layer()));
-  }
-  if (rule_ == SegmentRule::partial) psi_ = psi_table();
-  if (rule_ != SegmentRule::preintegrated) return;
-  for (const ClippedLayer& layer : layers) {
-    const Interval<double> range = range_of(layer.setup->layer());
-    const double step = steps_[tables_.size()];
-    auto& of_layer = tables_.emplace_back();
-    for (const MultivariateTransfer<double>& function : layer.setup->source().functions()) {
-      of_layer.push_back(std::make_unique<const PreintegratedStorage>(
-          function.table[0].table, range.begin, range.end, step, ParallelFor{}));
-    }
-  }
-}
-
 /// A layer's points on a ray, in the ranges that its clips keep.
 class SampledPath::LayerOnRay {
  public:
@@ -119,6 +41,7 @@ class SampledPath::LayerOnRay {
     inside.end = std::min(inside.end, part.range.end);
     ranges_ = ClipIntervals(inside, layer_.clips, part.ray).kept;
     range_ = 0;
+    side_at = -1;
     if (ranges_.empty()) return;
     for (const Interval<double>& range : ranges_) {
       ends.push_back(range.begin);
@@ -148,6 +71,9 @@ class SampledPath::LayerOnRay {
 
   const LayerSource& source;
   const std::unique_ptr<LayerPoints> points;
+  // Where isosurfaces were looked for last:
+  LayerPoint side;
+  double side_at = -1;
 
  private:
   void enter() {
@@ -203,7 +129,7 @@ RayResult SampledPath::sample(const RayPart& part, const std::stop_token& stop) 
 
 /// Returns whether what is behind does not matter, or nobody wants to know.
 bool SampledPath::is_over() const {
-  return fold_.done() || (segments_ % 1024 == 1023 && stop_->stop_requested());
+  return fold_.done() || stop_->stop_requested();
 }
 
 void SampledPath::find_surfaces(const RayPart& part) {
@@ -263,13 +189,16 @@ void SampledPath::find_crossings(double begin, double end) {
   for (const auto& layer : layers_) {
     const LayerLook& look = layer->source.look();
     if (look.isosurfaces().empty() || !layer->holds(begin, end)) continue;
-    LayerPoint front, back, at;
-    layer->points->find(begin, front);
+    LayerPoint& front = layer->side;
+    if (layer->side_at != begin) layer->points->find(begin, front);
+    LayerPoint back, at;
     layer->points->find(end, back);
-    if (front.function < 0 || back.function < 0) continue;
+    const LayerPoint before_step = std::exchange(front, back);
+    layer->side_at = end;
+    if (before_step.function < 0 || back.function < 0) continue;
     for (const Isosurface& surface : look.isosurfaces()) {
       const auto channel = static_cast<std::size_t>(surface.channel);
-      const double before = front.value[channel] - surface.value;
+      const double before = before_step.value[channel] - surface.value;
       const double behind = back.value[channel] - surface.value;
       if (!((before < 0) != (behind < 0))) continue;
       const double t = crossing(*layer->points, surface, begin, end, before, behind, at);
@@ -282,9 +211,7 @@ void SampledPath::find_crossings(double begin, double end) {
       }
       if (const Reflection<double>* const reflection = look.surface_reflection()) {
         layer->points->find_gradients(at);
-        color = light_up(*reflection, lights_.data(), static_cast<int>(lights_.size()), at.gradient,
-                         ray_.at(t), -ray_.direction)
-                    .apply(color);
+        color = lit(*reflection, at, t, color);
       }
       surfaces_.push_back({t, surface.opacity, color});
     }
@@ -295,7 +222,7 @@ void SampledPath::find_crossings(double begin, double end) {
 /// Finds where data cross the value of an isosurface between two places, on whose sides they are by
 /// `before` and `behind`: by four steps of false position.
 double SampledPath::crossing(LayerPoints& points, const Isosurface& surface, double begin,
-                             double end, double before, double behind, LayerPoint& at) const {
+                             double end, double before, double behind, LayerPoint& at) {
   double t = begin;
   for (int i = 0; i < 4; ++i) {
     t = begin + (end - begin) * (before / (before - behind));
@@ -331,12 +258,13 @@ void SampledPath::add_step(double begin, double end) {
 void SampledPath::add_part(double begin, double end) {
   if (!(begin < end) || fold_.done()) return;
   const double middle = 0.5 * (begin + end);
+  const SamplePositions of_rule = sample_positions(plan_.rule());
+  const bool has_light_in_middle = takes_data(plan_.rule());
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     OnSegment& on = on_[i];
     LayerOnRay& layer = *layers_[i];
-    SamplePositions seen = sample_positions(plan_.rule());
-    // Of light.
-    seen.middle = seen.middle || (takes_data(plan_.rule()) && layer.source.look().is_lit());
+    SamplePositions seen = of_rule;
+    seen.middle = seen.middle || (has_light_in_middle && layer.source.look().is_lit());
     const bool was_present = on.present && sampled_to_ == begin && seen.back;
     on.present = layer.source.look().has_medium() && layer.holds(begin, end);
     if (!on.present) continue;
@@ -395,56 +323,33 @@ void SampledPath::add(const SegmentResult<double>& segment, double begin, double
 
 SegmentResult<double> SampledPath::of_materials(double begin, double end) {
   const SamplePositions seen = sample_positions(plan_.rule());
-  struct Sum {
-    double extinction = 0;
-    Rgb<double> emission{};
-    void add(const Material<double>& here) {
-      extinction += here.extinction;
-      emission += here.extinction * here.color;
-    }
-    Material<double> mean() const {
-      if (!(extinction >= smallest_normal<double>)) return {};
-      return {extinction, (1 / extinction) * emission};
-    }
-  };
-  Material<double> front, middle, back;
-  std::size_t present = 0, last = 0;
-  for (std::size_t i = 0; i < on_.size(); ++i) {
-    if (!on_[i].present) continue;
-    ++present;
-    last = i;
-  }
-  if (present == 0) return {0, 0, 1, {}};
   const double half = 0.5 * (begin + end);
-  if (present == 1) {
-    OnSegment& on = on_[last];
-    if (seen.front) front = material(last, on.front, begin);
-    if (seen.middle) middle = material(last, on.middle, half);
-    if (seen.back) back = material(last, on.back, end);
-  } else {
-    Sum of_front, of_middle, of_back;
-    for (std::size_t i = 0; i < on_.size(); ++i) {
-      OnSegment& on = on_[i];
-      if (!on.present) continue;
-      if (seen.front) of_front.add(material(i, on.front, begin));
-      if (seen.middle) of_middle.add(material(i, on.middle, half));
-      if (seen.back) of_back.add(material(i, on.back, end));
-    }
-    front = of_front.mean();
-    middle = of_middle.mean();
-    back = of_back.mean();
+  // Depths per length: the color of a mixture is the mean weighted by extinction.
+  DepthWeightedColor<double> front, middle, back;
+  for (std::size_t i = 0; i < on_.size(); ++i) {
+    OnSegment& on = on_[i];
+    if (!on.present) continue;
+    if (seen.front) add_material(i, on.front, begin, front);
+    if (seen.middle) add_material(i, on.middle, half, middle);
+    if (seen.back) add_material(i, on.back, end, back);
   }
-  return material_segment(plan_.rule(), plan_.psi(), front, middle, back, end - begin);
+  const auto mean = [](const DepthWeightedColor<double>& sum) {
+    return Material<double>{sum.depth, sum.color};
+  };
+  return material_segment(plan_.rule(), plan_.psi(), mean(front), mean(middle), mean(back),
+                          end - begin);
 }
 
-/// Returns what a layer is made of at a point, in light.
-Material<double> SampledPath::material(std::size_t layer, LayerPoint& point, double t) {
-  if (point.function < 0) return {};
+/// Adds what a layer is made of at a point, in light.
+void SampledPath::add_material(std::size_t layer, LayerPoint& point, double t,
+                               DepthWeightedColor<double>& sum) const {
+  if (point.function < 0) return;
   const LayerSource& source = layers_[layer]->source;
-  Material<double> result =
+  Material<double> here =
       source.functions()[static_cast<std::size_t>(point.function)].evaluate(point.value);
-  if (result.extinction > 0 && source.look().is_lit()) light_up_point(layer, point, t, result);
-  return result;
+  if (!(here.extinction > 0)) return;
+  if (source.look().is_lit()) light_up_point(layer, point, t, here);
+  sum.add(here.extinction, here.color);
 }
 
 /// Weakens a layer's extinction and lights its color by what is at a point.
@@ -456,11 +361,16 @@ void SampledPath::light_up_point(std::size_t layer, LayerPoint& point, double t,
     material.extinction *= factor->evaluate(point.factor_argument).extinction;
   }
   if (const Reflection<double>* const reflection = look.reflection()) {
-    material.color =
-        pellucid::light_up(*reflection, lights_.data(), static_cast<int>(lights_.size()),
-                           point.gradient, ray_.at(t), -ray_.direction)
-            .apply(material.color);
+    material.color = lit(*reflection, point, t, material.color);
   }
+}
+
+/// Returns a color in the light at a point, whose gradient is known.
+Rgb<double> SampledPath::lit(const Reflection<double>& reflection, const LayerPoint& point,
+                             double t, const Rgb<double>& color) const {
+  return light_up(reflection, lights_.data(), static_cast<int>(lights_.size()), point.gradient,
+                  ray_.at(t), -ray_.direction)
+      .apply(color);
 }
 
 SegmentResult<double> SampledPath::of_data(double begin, double end) {

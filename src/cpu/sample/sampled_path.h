@@ -10,45 +10,10 @@
 #include "layers/layer_points.h"
 #include "pellucid/segment/compositor.h"
 #include "pellucid/segment/gaussian_mixture.h"
-#include "pellucid/segment/segment_rule.h"
-#include "preintegrated_storage.h"
 #include "ray_tracer.h"
+#include "sampling_plan.h"
 
 namespace pellucid {
-
-/// How a method for comparison samples the layers of a scene; shared by threads.
-class SamplingPlan {
- public:
-  /// `layers` must outlive the object; of a scene that check_method() accepts. `integration`: its
-  /// method is not `exact`. `largest_color`: of all that a ray may meet.
-  SamplingPlan(const std::vector<ClippedLayer>& layers, const Integration& integration,
-               double largest_color, bool depth);
-
-  SegmentRule rule() const noexcept { return rule_; }
-  /// Returns whether segments are those of the meshes' tetrahedra, in place of steps.
-  bool by_cells() const noexcept { return by_cells_; }
-  /// Returns the step of a layer by itself, world length.
-  double step(std::size_t layer) const noexcept { return steps_[layer]; }
-  /// Returns the transparency at which a ray ends.
-  double stop() const noexcept { return stop_; }
-  /// Returns whether the depth of half opacity is asked for.
-  bool depth() const noexcept { return depth_; }
-  /// Returns the table of a layer's function; empty if the rule is another than `preintegrated`.
-  PreintegratedTable table(std::size_t layer, int function) const noexcept {
-    if (tables_.empty()) return {};
-    return tables_[layer][static_cast<std::size_t>(function)]->view();
-  }
-  const PsiTable& psi() const noexcept { return psi_; }
-
- private:
-  SegmentRule rule_;
-  bool by_cells_;
-  double stop_;
-  bool depth_;
-  std::vector<double> steps_;  ///< of each layer
-  PsiTable psi_{};
-  std::vector<std::vector<std::unique_ptr<const PreintegratedStorage>>> tables_;
-};
 
 /// Samples rays through any layers by any rule, for comparison with the general path and for
 /// pictures while something moves. In: the points of layers (layer_points.h), in steps of the
@@ -88,8 +53,8 @@ class SampledPath {
   void go_through_cells(const RayPart& part);
   void find_surfaces(const RayPart& part);
   void find_crossings(double begin, double end);
-  double crossing(LayerPoints& points, const Isosurface& surface, double begin, double end,
-                  double before, double behind, LayerPoint& at) const;
+  static double crossing(LayerPoints& points, const Isosurface& surface, double begin, double end,
+                         double before, double behind, LayerPoint& at);
   void add_step(double begin, double end);
   void add_part(double begin, double end);
   void add_segment(double begin, double end);
@@ -97,7 +62,10 @@ class SampledPath {
   void add(const SegmentResult<double>& segment, double begin, double end);
   SegmentResult<double> of_materials(double begin, double end);
   SegmentResult<double> of_data(double begin, double end);
-  Material<double> material(std::size_t layer, LayerPoint& point, double t);
+  void add_material(std::size_t layer, LayerPoint& point, double t,
+                    DepthWeightedColor<double>& sum) const;
+  Rgb<double> lit(const Reflection<double>& reflection, const LayerPoint& point, double t,
+                  const Rgb<double>& color) const;
   void light_up_point(std::size_t layer, LayerPoint& point, double t,
                       Material<double>& material) const;
   void add_data(std::size_t layer, int number, const double* front, const double* back,

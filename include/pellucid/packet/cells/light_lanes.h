@@ -25,18 +25,26 @@ Vec3<Batch<float, N>> place_in_world(const PacketGrid& grid, const PacketLight& 
   return result;
 }
 
-/// Returns the directions in the world from which the lanes' rays come, of length 1.
+/// Returns the directions in the world from which rays with these in the grid come, of length 1.
 template <int N>
 Vec3<Batch<float, N>> direction_to_eye(const PacketLight& light,
-                                       const BlockMarch<N>& rays) noexcept {
+                                       const Batch<double, N>* direction) noexcept {
   using D = Batch<double, N>;
   Vec3<Batch<float, N>> result;
   for (int c = 0; c < 3; ++c) {
     D sum(0);
-    for (int a = 0; a < 3; ++a) sum += D(light.world_direction[c][a]) * D::load(rays.direction[a]);
+    for (int a = 0; a < 3; ++a) sum += D(light.world_direction[c][a]) * direction[a];
     result[c] = -convert<float>(sum);
   }
   return result;
+}
+template <int N>
+Vec3<Batch<float, N>> direction_to_eye(const PacketLight& light,
+                                       const BlockMarch<N>& rays) noexcept {
+  using D = Batch<double, N>;
+  const D direction[3] = {D::load(rays.direction[0]), D::load(rays.direction[1]),
+                          D::load(rays.direction[2])};
+  return direction_to_eye(light, direction);
 }
 
 /// The light of the spans that lanes work on, of cells of a grid.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/cells/gradient_loads.h"
+#include "pellucid/packet/cells/light_lanes.h"
 #include "pellucid/packet/sample/sampler_steps.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -30,12 +30,7 @@ class SampleLight {
         light_(is_lit_ ? *light : none),
         rays_(rays),
         loads_(grid, light_) {
-    if (!is_lit_) return;
-    for (int c = 0; c < 3; ++c) {
-      D sum(0);
-      for (int a = 0; a < 3; ++a) sum += D(light_.world_direction[c][a]) * rays.direction()[a];
-      to_eye_[c] = -convert<float>(sum);
-    }
+    if (is_lit_) to_eye_ = direction_to_eye(light_, rays.direction());
   }
 
   bool is_lit() const noexcept { return is_lit_; }
@@ -44,12 +39,14 @@ class SampleLight {
     D at[3];
     rays_.place(along, at);
     I cell[3];
+    Vec3<D> in_cell;
     Vec3<F> place;
     for (int a = 0; a < 3; ++a) {
       const D inside = clamp(at[a], D(0), D(grid_.cells[a]));
       const D lower = min(floor(inside), D(grid_.cells[a] - 1));
       cell[a] = select(lanes, convert<std::int32_t>(lower), I(0));
-      place[a] = convert<float>(inside - lower);
+      in_cell[a] = inside - lower;
+      place[a] = convert<float>(in_cell[a]);
     }
     Vec3<F> gradient, position;
     F magnitude(0);
@@ -62,15 +59,7 @@ class SampleLight {
           find_extinction(*light_.factor, magnitude, lanes, interval);
       result.factor = found.bounded(magnitude);
     }
-    if (light_.points > 0) {
-      for (int c = 0; c < 3; ++c) {
-        D sum(light_.world_origin[c]);
-        for (int a = 0; a < 3; ++a) {
-          sum = multiply_add(D(light_.world_direction[c][a]), at[a] - D(grid_.padding[a]), sum);
-        }
-        position[c] = convert<float>(sum);
-      }
-    }
+    if (light_.points > 0) position = place_in_world(grid_, light_, cell, in_cell);
     result.lit =
         light_up(light_.reflection, light_.light, light_.lights, gradient, position, to_eye_);
     return result;
