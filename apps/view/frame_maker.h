@@ -20,8 +20,8 @@ namespace pellucid::view {
 /// Renders frames from coarse to exact and publishes them. A frame that is overtaken by a newer
 /// scene still shows one coarse picture before it ends, so that a drag is seen while it lasts.
 ///
-/// Where the exact method takes longer than samples along the rays, as in light, the first pictures
-/// of a frame are sampled, and say so; the exact ones follow from the finest of these on.
+/// Samples the first pictures of a frame where the exact method takes longer, as in light, and says
+/// so; the exact ones follow from the finest of these on.
 class FrameMaker {
  public:
   using Publish = std::function<void(PageMessage)>;

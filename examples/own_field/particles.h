@@ -97,7 +97,7 @@ class ParticleCloud : public pellucid::StretchSource {
         const double square = particle.radius * particle.radius - dot(nearest, nearest);
         if (!(square > 0)) continue;
         const double half = std::sqrt(square);
-        // Of points on the way; where the ray grazes the ball, its ends are off by more.
+        // Of points on the way; where the ray grazes the ball, its ends have larger errors.
         const double off = point_error(middle + half);
         const double error = std::min(4 * off * (particle.radius + off) / half,
                                       std::sqrt(4 * off * particle.radius));

@@ -9,7 +9,7 @@ namespace pellucid {
 /// moves, of unknown error.
 Scene sampled_scene(Scene scene);
 
-/// Whether pictures that have to be there in time are better sampled: the exact method may take as
+/// Chooses which pictures that have to be there in time are sampled: the exact method may take as
 /// long or less, and an exact picture in time is better than a sampled one. Learns from the
 /// pictures of a program.
 class MovingPictures {

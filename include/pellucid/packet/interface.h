@@ -25,7 +25,7 @@ struct PellucidHalfOpacity {
   double begin, end, opacity_before;
 };
 
-/// What became of a ray, or of a part of one.
+/// The fate of a ray, or of a part of one.
 enum PellucidStatus : std::uint8_t {
   pellucid_followed,
   pellucid_left  ///< to the next way of following rays: the result means nothing
@@ -73,7 +73,7 @@ enum PellucidValue : std::int32_t {
   pellucid_f64
 };
 
-/// What the caller of a kernel knows of a job, and the kernel does not.
+/// Facts of a job that the caller of a kernel knows, and the kernel does not.
 struct PellucidCellContext;
 
 struct PellucidPacketJob {

@@ -87,7 +87,7 @@ struct PellucidLayeredJob {
   /// The grids of the variables of each layer whose cells parts name; null: they name none.
   const PellucidPacketJob* const* grid;
   const PellucidView<PellucidLaneMixture>* mixture;  ///< of each layer; null: of one variable
-  /// Of these layers, the data of parts that are no cells: [lane][row], of each variable.
+  /// Data of these layers' parts that are no cells: [lane][row], of each variable.
   const float* const* curves;
   double largest_color, largest_extinction;
   std::int32_t depth;  ///< whether results are to say where half of the opacity is

@@ -21,7 +21,7 @@ struct PellucidLinearSpan {
   double error, length, position_error, end_error;
 };
 
-/// What the caller of a kernel knows of a job, and the kernel does not.
+/// Facts of a job that the caller of a kernel knows, and the kernel does not.
 struct PellucidSpanContext;
 
 struct PellucidMeshJob {

@@ -44,7 +44,7 @@ class Ball : public pellucid::StretchSource {
       if (!(square > 0)) return {1, 0};  // it misses the ball
       const double half = std::sqrt(square);
       inside_ = {middle - half, middle + half};
-      // Points are off by some roundings, and the ends by more where the ray grazes the ball.
+      // Points have errors of some roundings, the ends larger ones where the ray grazes the ball.
       point_error_ = 0x1p-50 * (length(ray.origin) + std::abs(inside_.end));
       end_error_ = std::fmin(4 * point_error_ / half, std::sqrt(4 * point_error_)) + point_error_;
       return inside_;

@@ -137,7 +137,7 @@ class SpanLight {
     return measure(change, piece.spread.kinks, piece.seen.depth, F(transfer.largest_color), from,
                    to);
   }
-  /// The same of colors up to `largest` that differ by `change` and are off by `kinks`.
+  /// Bounds the light on colors up to `largest` that differ by `change`; `kinks`: their error.
   [[gnu::noinline]] LightOfPiece<N> measure(F change, F kinks, F depth, F largest, F from,
                                             F to) const noexcept {
     LightOfPiece<N> result;

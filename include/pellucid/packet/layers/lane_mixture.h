@@ -49,7 +49,7 @@ struct MixtureLanes {
       const auto along = gaussian_along(g, part + g.first);
       const F peak = F(g.peak) * length;
       const F bound = peak * exp(-min(along.lower(), F(80)));
-      // What the places, p = K (v - c), are off by.
+      // The error of the place, p = K (v - c).
       F place(0);
       for (int row = 0; row < g.rows; ++row) {
         for (int c = 0; c < g.channels; ++c) {
@@ -65,7 +65,8 @@ struct MixtureLanes {
       result.off += select(held & known & !matters, bound, F(0));
       if (none(matters)) continue;
       near.add(matters, i);
-      // |p|² is off by 2 |p| times that, and rounded; a quarter more for what is of second order.
+      // Charge |p|² with 2 |p| times that and its rounding, and a quarter more for the second
+      // order.
       const F upper = min(along.upper(), F(80));
       const F moved = F(2.5f) * (sqrt(upper) + place) * place + F(32 * unit) * (F(1) + upper);
       result.off += select(matters, bound * moved, F(0));
@@ -98,7 +99,7 @@ struct MixtureLanes {
   }
 
  private:
-  /// Of a depth, what is charged and not looked at.
+  /// The largest depth that is charged and not looked at.
   static constexpr float negligible = 0x1p-40f;
 };
 #endif
