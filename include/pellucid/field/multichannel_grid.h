@@ -24,7 +24,7 @@ struct MultichannelGrid {
 
   /// Computes the values at a place. Returns false in vacuum.
   template <class T>
-  PELLUCID_HD bool sample(const GridPlace<T>& place, T* values) const noexcept {
+  PELLUCID_HD bool sample_at(const GridPlace<T>& place, T* values) const noexcept {
     T sum = T(0);
     for (int c = 0; c < channels; ++c) {
       values[c] =
@@ -36,7 +36,7 @@ struct MultichannelGrid {
   /// Computes the same at a position in grid coordinates, clamped into the box.
   template <class T>
   PELLUCID_HD bool sample(Vec3<double> position_grid, T* values) const noexcept {
-    return sample(place_in_grid<T>(axis, position_grid), values);
+    return sample_at(place_in_grid<T>(axis, position_grid), values);
   }
 
  private:

@@ -297,7 +297,7 @@ class VolumePoints : public GridPoints {
 
   void find(double t, LayerPoint& point) override {
     point.place = place(t);
-    point.function = source_.grid().sample(point.place, point.value) ? 0 : -1;
+    point.function = source_.grid().sample_at(point.place, point.value) ? 0 : -1;
     if (point.function == 0 && source_.labels() != nullptr) {
       const Vec3<double> here = position(t);
       int cell[3];
@@ -423,7 +423,7 @@ class ChannelsPoints : public GridPoints {
 
   void find(double t, LayerPoint& point) override {
     point.place = place(t);
-    point.function = source_.grid().sample(point.place, point.value) ? 0 : -1;
+    point.function = source_.grid().sample_at(point.place, point.value) ? 0 : -1;
   }
   void find_gradients(LayerPoint& point) const override {
     source_.gradients().find(point);
