@@ -38,9 +38,9 @@ struct PellucidLayerRow {
   };
   // Fields of a part: the number of the function, PartKind, what the data may be off by; their
   // Bernstein coefficients, those of the gradient in the world, and of its magnitude. Of a cell its
-  // place in the grid, and those of entry and exit in it. Of layers of several variables the data
-  // are elsewhere (PellucidLayeredJob::curves); here are the bits of the primitives that may
-  // matter.
+  // place in the grid, and those of entry and exit in it; of a run of cells no more. Of layers of
+  // several variables the data are elsewhere (PellucidLayeredJob::curves); here are the bits of the
+  // primitives that may matter.
   enum Part : int {
     function,
     part_kind,
@@ -54,12 +54,14 @@ struct PellucidLayerRow {
     exit_in_cell = entry_in_cell + 3,
     primitives_of_cell = exit_in_cell + 3,
     cell_fields = primitives_of_cell + 2,
+    run_fields = 4,
     primitives_of_curve = data
   };
   enum PartKind : int {
     curve,
     constant,  ///< in place of data extinction and color
-    cell
+    cell,
+    run  ///< of cells, through which the ray is to be followed
   };
   static constexpr int most_lanes = 16;
   static constexpr int of_a_ray = 16;  ///< rows, one after the other, and then the first again
@@ -69,6 +71,12 @@ struct PellucidLayerRow {
   static constexpr int curve_fields(int variables) {
     return 4 * variables + (variables + 3) / 4 * 4;
   }
+};
+
+/// Rays in a grid, one in each lane: in plane coordinates (PacketGrid), their parameter the world
+/// arc length.
+struct PellucidGridRays {
+  double origin[3][PellucidLayerRow::most_lanes], direction[3][PellucidLayerRow::most_lanes];
 };
 
 /// Rays through several layers, one in each lane, and what lies ahead of them. A packet is begun
@@ -96,17 +104,19 @@ struct PellucidLayeredJob {
   std::int32_t count;
   float tolerance[PellucidLayerRow::most_lanes], length[PellucidLayerRow::most_lanes];
   float to_eye[3][PellucidLayerRow::most_lanes];
-  const float* head;                                ///< [lane][row]
-  const float* part;                                ///< [layer][lane][row]
+  const float* head;             ///< [lane][row]
+  const float* part;             ///< [layer][lane][row]
+  const PellucidGridRays* walk;  ///< of each layer, where parts are runs of cells
+  const double* range;           ///< [lane][row], of such parts: begin and end
   std::int32_t next[PellucidLayerRow::most_lanes];  ///< the first row that is not taken; in and out
   std::int32_t end[PellucidLayerRow::most_lanes];   ///< behind the last one that is there
   std::int32_t done[PellucidLayerRow::most_lanes];  ///< out: nothing more matters
 
-  // Where a row is not for packets, or no more of it: the caller integrates the share [from, 1] of
+  // Where a row is not for packets, or some of it: the caller integrates the share [from, to] of
   // the row before `next`.
   std::int32_t waits[PellucidLayerRow::most_lanes];     ///< out
   std::int32_t gives_up[PellucidLayerRow::most_lanes];  ///< in: such a ray is not followed further
-  double from[PellucidLayerRow::most_lanes];
+  double from[PellucidLayerRow::most_lanes], to[PellucidLayerRow::most_lanes];
   double allowance_flat[PellucidLayerRow::most_lanes];
   double allowance_per_opacity[PellucidLayerRow::most_lanes];
   PellucidCellResult handed[PellucidLayerRow::most_lanes];  ///< in, of lanes that wait

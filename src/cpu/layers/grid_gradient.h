@@ -18,6 +18,8 @@ class GridGradient {
  public:
   GridGradient(const Volume& volume, GradientKind kind);
 
+  GradientKind kind() const noexcept { return kind_; }
+
   /// Computes the three components along a step through a cell, which has no NaN corner.
   void along(const StructuredWalk<double>::Step& step, CubicBernstein<double> (&gradient)[3]) const;
   /// Returns by how much the coefficients of the gradient may differ, because the ray may be in a

@@ -42,6 +42,7 @@ class GridStream : public LayerStream {
   void restrict_to_range(Interval<double> range) override {
     blocks_.emplace(records_, ray_, range);
     cells_.reset();
+    is_ahead_ = false;
   }
 
  protected:
@@ -66,6 +67,26 @@ class GridStream : public LayerStream {
       }
       cells_.emplace(axis_, ray_, visited);
     }
+  }
+  /// Finds the next run of blocks that are not skipped, one behind the other. Returns false behind
+  /// the last one.
+  bool next_run(Interval<double>& run) {
+    bool begun = false;
+    while (is_ahead_ || (blocks_ && blocks_->next(classes_, block_))) {
+      is_ahead_ = false;
+      if (classes_ != nullptr && classes_[block_.block].kind == BlockKind::skip) {
+        if (begun) return true;
+        continue;
+      }
+      if (begun && block_.t_begin > run.end) {
+        is_ahead_ = true;
+        return true;
+      }
+      if (!begun) run.begin = block_.t_begin;
+      run.end = block_.t_end;
+      begun = true;
+    }
+    return begun;
   }
   const Affine<double>& grid_from_world() const { return volume_.grid_from_world(); }
   const Ray<double>& ray() const { return ray_; }
@@ -98,6 +119,7 @@ class GridStream : public LayerStream {
   std::optional<BlockWalk> blocks_;
   std::optional<StructuredWalk<double>> cells_;
   BlockStep block_{};
+  bool is_ahead_ = false;  ///< whether the block is one that next_run() did not tell
 };
 
 }  // namespace pellucid

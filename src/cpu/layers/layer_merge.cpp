@@ -106,7 +106,7 @@ class LayerMerge::ClippedStream {
       stretch_.primitives = {};
       stretch_.left_out = stretch_.position_error = stretch_.unknown = 0;
       stretch_.gradient_error = 0;
-      stretch_.by_cell = false;
+      stretch_.kind = LayerStretch::Kind::curves;
       if (stream_->next(stretch_)) {
         if (surfaces_) surfaces_->take(stretch_);
         return;

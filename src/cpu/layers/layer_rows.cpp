@@ -92,7 +92,12 @@ bool write_part(const SeenLayer& layer, int number, const LayerStretch& stretch,
                 Interval<double> range, float* to, float* curves, bool& absorbs) {
   if (!layer.in_lanes) return false;
   to[Row::function] = static_cast<float>(layer.first_function + number);
-  if (stretch.by_cell) {
+  if (stretch.kind == LayerStretch::Kind::run) {
+    to[Row::part_kind] = Row::run;
+    to[Row::rounding] = 0;
+    return true;
+  }
+  if (stretch.kind == LayerStretch::Kind::cell) {
     write_cell(stretch.cell, range, to);
     if (layer.mixture) write_primitives(stretch.primitives, to + Row::primitives_of_cell);
     return true;

@@ -22,8 +22,10 @@ struct LayerStretch : FieldStretch {
   double left_out = 0;      ///< upper bound on the extinction of what is ignored here
   double unknown = 0;       ///< upper bound on an opacity in front of it that is not known
 
-  /// Whether `cell`, which holds the stretch, is all that is told: neither data nor gradients.
-  bool by_cell = false;
+  /// What is told: data and gradients; of cells(), `cell` alone, which holds the stretch, or that
+  /// it is a run of cells which are to be found.
+  enum class Kind { curves, cell, run };
+  Kind kind = Kind::curves;
   StructuredWalk<double>::Step cell{};
 };
 
@@ -45,7 +47,7 @@ class LayerSource {
 
   /// Returns the functions that its stretches refer to.
   const std::vector<MultivariateTransfer<double>>& functions() const noexcept { return functions_; }
-  /// `by_cells`: stretches may tell cells of cells() alone.
+  /// `by_cells`: stretches may tell cells of cells() alone (LayerStretch::Kind).
   virtual std::unique_ptr<LayerStream> stream(bool by_cells) const = 0;
   /// Returns its points, for methods that sample: those of its stretches, unless the data tell them
   /// in less time.

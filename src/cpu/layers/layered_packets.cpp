@@ -225,6 +225,8 @@ class LayeredPackets::Packet {
         part_(layers_ * Row::most_lanes * Row::of_a_ray * Row::part_fields),
         curves_(layers_),
         row_(lanes_ * Row::of_a_ray),
+        range_(2 * lanes_ * Row::of_a_ray),
+        walk_(layers_),
         again_(of.layers_, of.lights_, job_.largest_color, false),
         media_(again_.sources(), of.lights_) {
     for (std::size_t l = 0; l < lanes_; ++l) {
@@ -239,6 +241,8 @@ class LayeredPackets::Packet {
     job_.state = state_.get();
     job_.head = head_.data();
     job_.part = part_.data();
+    job_.range = range_.data();
+    job_.walk = walk_.data();
     job_.results = results_.data();
   }
 
@@ -307,8 +311,20 @@ class LayeredPackets::Packet {
       job_.next[l] = job_.end[l] = job_.done[l] = job_.waits[l] = 0;
       job_.gives_up[l] = 0;
       ended_[l] = gave_up_[l] = false;
+      for (std::size_t k = 0; k < layers_; ++k) place_in_grid(k, l, ray_[from]);
     }
     run(PellucidLayeredJob::begin);
+  }
+
+  /// Takes a lane's ray into the coordinates of a layer's planes.
+  void place_in_grid(std::size_t layer, std::size_t lane, const Ray<double>& ray) {
+    const SeenLayer& seen = of_.seen_[layer];
+    if (seen.grid.empty()) return;
+    const Ray<double> in_grid = seen.source->cells()->grid_from_world().ray(ray);
+    for (int a = 0; a < 3; ++a) {
+      walk_[layer].origin[a][lane] = in_grid.origin[a] + seen.grid[0].padding[a];
+      walk_[layer].direction[a][lane] = in_grid.direction[a];
+    }
   }
 
   /// How much longer rays are taken for where there are surfaces: one may be at the very end.
@@ -380,6 +396,8 @@ class LayeredPackets::Packet {
     head[Row::entry] = static_cast<float>(entry.x);
     head[Row::entry + 1] = static_cast<float>(entry.y);
     head[Row::entry + 2] = static_cast<float>(entry.z);
+    range_[2 * at] = part.range.begin;
+    range_[2 * at + 1] = part.range.end;
     const LayerMerge& merge = merge_[lane];
     int present = 0;
     bool for_lanes = true;
@@ -418,7 +436,9 @@ class LayeredPackets::Packet {
   bool integrate(std::size_t lane) {
     const MergedPart& row = row_[slot(lane, job_.next[lane] - 1)];
     const double whole = row.range.end - row.range.begin;
-    const Interval<double> range{row.range.begin + job_.from[lane] * whole, row.range.end};
+    const Interval<double> range{
+        row.range.begin + job_.from[lane] * whole,
+        job_.to[lane] < 1 ? row.range.begin + job_.to[lane] * whole : row.range.end};
     const double length = range.end - range.begin;
     double most = 0;
     follow_again(lane, range, [&](const MergedPart& part) {
@@ -470,9 +490,11 @@ class LayeredPackets::Packet {
   std::vector<float> head_, part_;
   std::vector<std::vector<float>> curves_;  ///< of layers of several variables
   std::array<const float*, Row::most_layers> curve_{};
-  std::vector<MergedPart> row_;   ///< what rows were made from
-  std::deque<LayerMerge> merge_;  ///< of each lane
-  LayerMerge again_;              ///< of what lanes are not for
+  std::vector<MergedPart> row_;         ///< what rows were made from
+  std::vector<double> range_;           ///< of rows: begin and end
+  std::vector<PellucidGridRays> walk_;  ///< of layers
+  std::deque<LayerMerge> merge_;        ///< of each lane
+  LayerMerge again_;                    ///< of what lanes are not for
   MediumParts media_;
   std::array<PellucidRayResult, Row::most_lanes> results_{};
   // Of the lanes' rays.

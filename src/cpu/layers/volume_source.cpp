@@ -70,6 +70,8 @@ class GridGradients {
     if (gradient_) point.gradient = gradient_->at(point.place);
     if (magnitude_) point.factor_argument = magnitude_->magnitude_at(point.place);
   }
+  /// Returns whether gradients are the same on both sides of a plane between cells.
+  bool are_continuous() const { return !gradient_ || gradient_->kind() == GradientKind::smooth; }
   /// Returns whether the gradient of a step may be that of another cell.
   bool is_doubtful(const StructuredWalk<double>::Step& step, const GridAxis<double> (&axis)[3],
                    const PlaneDoubt& planes) const {
@@ -105,6 +107,7 @@ class VolumeSource : public LayerSource {
     in_cells_ = !look().has_surfaces() && fits_single(*content_.volume) &&
                 suits_lanes(*content_.volume, most_extinction()) &&
                 (!look().is_lit() || is_uniform(*content_.volume));
+    in_runs_ = in_cells_ && is_uniform(*content_.volume) && fits_walks(grid_.axis);
   }
 
   std::unique_ptr<LayerStream> stream(bool by_cells) const override;
@@ -124,8 +127,15 @@ class VolumeSource : public LayerSource {
   const LabelAxes* labels() const { return labels_ ? &*labels_ : nullptr; }
   const MultichannelGrid& grid() const { return grid_; }
   const GridGradients& gradients() const { return gradients_; }
+  /// Returns whether stretches can be runs of cells.
+  bool in_runs() const { return in_runs_; }
 
  private:
+  /// Returns whether binary32 can count the cells along each axis.
+  static bool fits_walks(const GridAxis<double> (&axis)[3]) {
+    return std::ranges::all_of(axis, [](const auto& one) { return one.cells() < 1 << 23; });
+  }
+
   /// Labels whose functions are looked up without a search.
   static constexpr std::int32_t common_labels = 1024;
 
@@ -152,7 +162,7 @@ class VolumeSource : public LayerSource {
   std::deque<ChannelTable<double>> tables_;  ///< addresses stay
   std::optional<LabelAxes> labels_;
   std::vector<int> function_of_;  ///< of labels from 0 on
-  bool in_cells_ = false;
+  bool in_cells_ = false, in_runs_ = false;
 };
 
 /// The cells of a grid as stretches, cut at the cells of a mask.
@@ -166,16 +176,27 @@ class VolumeStream : public GridStream {
 
   Interval<double> start(const Ray<double>& ray) override {
     if (source_.labels() != nullptr) sides_.start(grid_from_world(), ray);
-    return GridStream::start(ray);
+    const Interval<double> inside = GridStream::start(ray);
+    // Beside a plane, gradients may be those of either cell.
+    in_runs_ = by_cells_ && source_.in_runs() &&
+               (source_.gradients().are_continuous() ||
+                !planes().runs_along_planes(GridStream::ray(), inside));
+    return inside;
   }
   void restrict_to_range(Interval<double> range) override {
     GridStream::restrict_to_range(range);
     labels_.reset();
     range_ = range;
-    cut_to_ = step_.t_end;
+    run_ = {0, 0};
+    cut_to_ = in_runs_ ? 0 : step_.t_end;
   }
 
   bool next(LayerStretch& stretch) override {
+    return in_runs_ ? next_of_run(stretch) : next_of_cell(stretch);
+  }
+
+ private:
+  bool next_of_cell(LayerStretch& stretch) {
     while (!(cut_to_ < step_.t_end)) {
       int block = 0;
       bool skipped = false;
@@ -207,7 +228,67 @@ class VolumeStream : public GridStream {
     return true;
   }
 
- private:
+  /// Tells runs of cells, or as much of them as has one function.
+  bool next_of_run(LayerStretch& stretch) {
+    if (!(cut_to_ < run_.end)) {
+      if (!next_run(run_)) return false;
+      cut_to_ = run_.begin;
+    }
+    stretch.kind = LayerStretch::Kind::run;
+    stretch.begin = cut_to_;
+    if (source_.labels() == nullptr) {
+      stretch.end = cut_to_ = run_.end;
+      stretch.position_error = grid_position_error(run_.end);
+      stretch.function = 0;
+      return true;
+    }
+    come_to(cut_to_);
+    StructuredWalk<double>::Step part = part_of_label(run_.end);
+    stretch.function = source_.function_at(part.cell);
+    bool is_one = has_one_function(part, stretch.function);
+    if (!is_one) stretch.left_out = source_.most_extinction();
+    cut_to_ = part.t_end;
+    while (is_one && cut_to_ < run_.end) {
+      come_to(cut_to_);
+      const StructuredWalk<double>::Step more = part_of_label(run_.end);
+      is_one = source_.function_at(more.cell) == stretch.function &&
+               has_one_function(more, stretch.function);
+      if (!is_one) break;
+      part.exit = more.exit;
+      cut_to_ = part.t_end = more.t_end;
+    }
+    stretch.end = cut_to_;
+    stretch.position_error =
+        std::max(2 * grid_position_error(part.t_end), sides_.position_error(part));
+    return true;
+  }
+
+  /// Returns the part of the label's cell from cut_to_ on, up to `end` at most.
+  StructuredWalk<double>::Step part_of_label(double end) const {
+    StructuredWalk<double>::Step part = label_;
+    part.t_begin = cut_to_;
+    part.t_end = std::min(label_.t_end, end);
+    const double of_label = label_.t_end - label_.t_begin;
+    const bool is_begun = part.t_begin > label_.t_begin, goes_on = part.t_end < label_.t_end;
+    if (of_label > 0 && (is_begun || goes_on)) {
+      const auto place = [&](double t) {
+        return label_.entry + (label_.exit - label_.entry) * ((t - label_.t_begin) / of_label);
+      };
+      if (is_begun) part.entry = place(part.t_begin);
+      if (goes_on) part.exit = place(part.t_end);
+    }
+    return part;
+  }
+
+  /// Returns whether all label cells that a part may be in have this function.
+  bool has_one_function(const StructuredWalk<double>::Step& part, int function) const {
+    bool is_one = true;
+    sides_.for_each_other_cell(source_.labels()->axis(), part, [&](const int(&cell)[3]) {
+      is_one = is_one && source_.function_at(cell) == function;
+    });
+    return is_one;
+  }
+
   /// Goes on to the label at t.
   void come_to(double t) {
     // Through few cells, or over a gap.
@@ -223,28 +304,13 @@ class VolumeStream : public GridStream {
 
   /// Tells the next part of a cell that has one label.
   void cut(LayerStretch& stretch) {
-    StructuredWalk<double>::Step part = label_;
-    part.t_begin = cut_to_;
-    part.t_end = std::min(label_.t_end, step_.t_end);
-    const double of_label = label_.t_end - label_.t_begin;
-    const bool is_begun = part.t_begin > label_.t_begin, goes_on = part.t_end < label_.t_end;
-    if (of_label > 0 && (is_begun || goes_on)) {
-      const auto place = [&](double t) {
-        return label_.entry + (label_.exit - label_.entry) * ((t - label_.t_begin) / of_label);
-      };
-      if (is_begun) part.entry = place(part.t_begin);
-      if (goes_on) part.exit = place(part.t_end);
-    }
+    const StructuredWalk<double>::Step part = part_of_label(step_.t_end);
     stretch.begin = part.t_begin;
     stretch.end = part.t_end;
     stretch.function = source_.function_at(part.cell);
     stretch.position_error =
         std::max(2 * grid_position_error(part.t_end), sides_.position_error(part));
-    sides_.for_each_other_cell(source_.labels()->axis(), part, [&](const int(&cell)[3]) {
-      if (source_.function_at(cell) != stretch.function) {
-        stretch.left_out = source_.most_extinction();
-      }
-    });
+    if (!has_one_function(part, stretch.function)) stretch.left_out = source_.most_extinction();
     const double length = step_.t_end - step_.t_begin;
     tell((part.t_begin - step_.t_begin) / length, (part.t_end - step_.t_begin) / length, stretch);
     cut_to_ = part.t_end;
@@ -253,8 +319,8 @@ class VolumeStream : public GridStream {
 
   /// Tells what is known of the share [from, to] of the cell.
   void tell(double from, double to, LayerStretch& stretch) const {
-    stretch.by_cell = by_cell_;
     if (by_cell_) {
+      stretch.kind = LayerStretch::Kind::cell;
       stretch.cell = step_;
       return;
     }
@@ -276,9 +342,12 @@ class VolumeStream : public GridStream {
   bool by_cell_ = false;  ///< whether neither its data nor its gradients are known
   MultivariateSpan<double> span_;
   LayerStretch whole_;  ///< the gradients in it
+  // Runs of cells.
+  bool in_runs_ = false;
+  Interval<double> run_{0, 0};
   // The mask.
   Interval<double> range_{0, 0};
-  double cut_to_ = 0;  ///< the part of the cell up to here was told
+  double cut_to_ = 0;  ///< the part of the cell, or of the run, up to here was told
   std::optional<StructuredWalk<double>> labels_;
   StructuredWalk<double>::Step label_{};  ///< at cut_to_
 };
@@ -386,9 +455,8 @@ class ChannelsStream : public GridStream {
         return true;
       }
       stretch.primitives = source_.blocks().primitives[block];
-      stretch.by_cell =
-          by_cells_ && !source_.gradients().is_doubtful(step, source_.grid().axis, planes());
-      if (stretch.by_cell) {
+      if (by_cells_ && !source_.gradients().is_doubtful(step, source_.grid().axis, planes())) {
+        stretch.kind = LayerStretch::Kind::cell;
         stretch.function = 0;
         stretch.cell = step;
         return true;

@@ -5,6 +5,7 @@
 #include "pellucid/packet/cells/span_light.h"
 #include "pellucid/packet/layered_interface.h"
 #include "pellucid/packet/layers/cell_loads.h"
+#include "pellucid/packet/layers/cell_walk.h"
 #include "pellucid/packet/layers/lane_mixture.h"
 #include "pellucid/packet/layers/lane_transfers.h"
 #include "pellucid/packet/layers/piece_sum.h"
@@ -17,9 +18,10 @@ namespace pellucid {
 
 /// Integrates N rays through several layers at once, each in a lane of its own and within its own
 /// tolerance; what a ray becomes depends on no other lane. What lies ahead of the rays comes in
-/// rows (layered_interface.h). Of a row each lane takes piece by piece: up to where the extinction
-/// of a layer has a corner, or light has a kink, and halved where the budget cannot pay for its
-/// color. The depth of a piece is the sum of the layers', its color
+/// rows (layered_interface.h), and these in steps: where a layer's part is a run of cells, a step
+/// ends where a cell does; else it is the row. Of a step each lane takes piece by piece: up to
+/// where the extinction of a layer has a corner, or light has a kink, and halved where the budget
+/// cannot pay for its color. The depth of a piece is the sum of the layers', its color
 ///
 ///   Σ τ_l C_l / Σ τ_l,
 ///
@@ -43,6 +45,7 @@ class LayeredPacket {
         fold_(loaded(job.tolerance), job.largest_extinction, job.largest_color, loaded(job.length)),
         trace_(job.depth != 0) {
     const Vec3<F> to_eye{loaded(job.to_eye[0]), loaded(job.to_eye[1]), loaded(job.to_eye[2])};
+    for (int a = 0; a < 3; ++a) to_eye_[a] = to_eye[a];
     for (int k = 0; k < layers_; ++k) {
       new (&layer_[k]) Layer(job, k, to_eye);
     }
@@ -58,6 +61,7 @@ class LayeredPacket {
     alive_ = alive_ & !given_up;
     pending_ = pending_ & !given_up;
     waits_ = waits_ & !given_up;
+    in_row_ = in_row_ & !given_up;
     take_handed();
     for (;;) {
       take_rows();
@@ -111,6 +115,9 @@ class LayeredPacket {
     union {
       CellLoads<N> cells;
     };
+    M runs{false};  ///< lanes whose parts are runs of cells
+    CellWalk<N> walk;
+    typename CellLoads<N>::Ways way;  ///< through cells
 
     Layer(const PellucidLayeredJob& job, int number, const Vec3<F>& to_eye) noexcept
         : transfers(job.functions),
@@ -122,6 +129,7 @@ class LayeredPacket {
       if (has_cells) {
         new (&cells) CellLoads<N>(job.grid[number], mixture != nullptr ? mixture->light_channel : 0,
                                   has_light ? *seen(job.light[number]) : no_light());
+        walk.take(job.walk[number], PacketGrid(job.grid[number][0]).cells);
       }
     }
   };
@@ -135,65 +143,157 @@ class LayeredPacket {
     return Batch<T, N>::load(of_lane);
   }
 
-  /// Gives the lanes without a row the next one of their ray, if there is any.
+  /// Gives the lanes that work on nothing the next step of their row, or the next row of their ray,
+  /// if there is any.
   [[gnu::flatten]] void take_rows() noexcept {
     for (;;) {
-      const M lanes = alive_ & !pending_ & !waits_ & (next_ < end_);
-      if (none(lanes)) return;
-      std::int32_t lane[N];
-      for (int l = 0; l < N; ++l) lane[l] = l * Row::of_a_ray;
-      const I at = select(lanes, I::load(lane) + (next_ & I(Row::of_a_ray - 1)), I(0));
-      F head[Row::head_fields];
-      load_records<Row::head_fields>(job_->head, at, head);
-      next_ += select(lanes, I(1), I(0));
-      rows_ += select(lanes, I(1), I(0));
-      const I kind = convert<std::int32_t>(head[Row::kind]);
-      const auto is = [&](int one) noexcept { return lanes & (kind == I(one)); };
-      length_ = select(lanes, head[Row::length], length_);
-      left_ = select(lanes, head[Row::left], left_);
-      place_error_ = select(lanes, head[Row::position_error], place_error_);
-      left_out_ = select(lanes, head[Row::left_out], left_out_);
-      from_ = select(lanes, F(0), from_);
-      fold_.budget.set_remaining_length(select(lanes, left_, fold_.budget.remaining_length()));
-      const M medium = is(Row::medium);
-      if (any(medium)) begin(medium, at, head);
-      if (all(medium | !lanes)) continue;
-      waits_ = waits_ | is(Row::by_host);
-      const M ends = is(Row::end);
-      alive_ = alive_ & !ends;
-      meet(lanes & !medium & !waits_ & !ends, kind, head);
+      const M idle = alive_ & !pending_ & !waits_;
+      const M going_on = idle & in_row_, lanes = idle & !in_row_ & (next_ < end_);
+      if (none(going_on | lanes)) return;
+      if (any(lanes)) take_rows(lanes);
+      const M medium = (going_on | lanes) & in_row_;
+      if (any(medium)) begin_step(medium);
     }
   }
 
-  void begin(M lanes, I at, const F (&head)[Row::head_fields]) noexcept {
-    const I present = convert<std::int32_t>(head[Row::present]);
-    const Vec3<F> entry{head[Row::entry], head[Row::entry + 1], head[Row::entry + 2]};
+  void take_rows(M lanes) noexcept {
+    std::int32_t lane[N];
+    for (int l = 0; l < N; ++l) lane[l] = l * Row::of_a_ray;
+    const I at = select(lanes, I::load(lane) + (next_ & I(Row::of_a_ray - 1)), I(0));
+    F head[Row::head_fields];
+    load_records<Row::head_fields>(job_->head, at, head);
+    next_ += select(lanes, I(1), I(0));
+    const I kind = convert<std::int32_t>(head[Row::kind]);
+    const auto is = [&](int one) noexcept { return lanes & (kind == I(one)); };
+    length_ = select(lanes, head[Row::length], length_);
+    left_ = select(lanes, head[Row::left], left_);
+    place_error_ = select(lanes, head[Row::position_error], place_error_);
+    left_out_ = select(lanes, head[Row::left_out], left_out_);
+    from_ = select(lanes, F(0), from_);
+    step_begin_ = select(lanes, D(0), step_begin_);
+    step_end_ = select(lanes, D(1), step_end_);
+    fold_.budget.set_remaining_length(select(lanes, left_, fold_.budget.remaining_length()));
+    const M medium = is(Row::medium);
+    if (any(medium)) begin_row(medium, at, head);
+    if (all(medium | !lanes)) return;
+    waits_ = waits_ | is(Row::by_host);
+    const M ends = is(Row::end), others = lanes & !medium & !waits_ & !ends;
+    rows_ += select(lanes & !medium, I(1), I(0));
+    alive_ = alive_ & !ends;
+    meet(others, kind, head);
+  }
+
+  /// Begins rows with a medium.
+  void begin_row(M lanes, I at, const F (&head)[Row::head_fields]) noexcept {
+    in_row_ = in_row_ | lanes;
+    row_.at = select(lanes, at, row_.at);
+    row_.present = select(lanes, convert<std::int32_t>(head[Row::present]), row_.present);
+    for (int a = 0; a < 3; ++a) {
+      row_.entry[a] = select(lanes, head[Row::entry + a], row_.entry[a]);
+    }
+    row_.left = select(lanes, head[Row::left], row_.left);
+    row_.has_runs = row_.has_runs & !lanes;
+    for (int k = 0; k < layers_; ++k) {
+      Layer& layer = layer_[k];
+      if (!layer.has_cells || layer.mixture != nullptr) continue;
+      const M here = lanes & ((row_.present & I(1 << k)) != I(0));
+      const M runs = any(here) ? here & (gather(parts_of(k), at * I(Row::part_fields) +
+                                                                 I(Row::part_kind)) == F(Row::run))
+                               : here;
+      layer.runs = (layer.runs & !lanes) | runs;
+      if (none(runs)) continue;
+      const M first = runs & !row_.has_runs;
+      if (any(first)) {
+        row_.begin = select(first, gather(job_->range, at * I(2)), row_.begin);
+        row_.end = select(first, gather(job_->range, at * I(2) + I(1)), row_.end);
+        row_.reached = select(first, row_.begin, row_.reached);
+        row_.has_runs = row_.has_runs | first;
+      }
+      layer.walk.begin(runs, row_.begin);
+    }
+  }
+
+  /// Goes on by a step of the lanes' rows: as far as all layers stay in their cells.
+  void begin_step(M lanes) noexcept {
+    const M stepping = lanes & row_.has_runs;
+    M empty(false);
+    F entry[3] = {row_.entry[0], row_.entry[1], row_.entry[2]};
+    if (any(stepping)) {
+      const D begin = row_.reached;
+      D end = row_.end;
+      for (int k = 0; k < layers_; ++k) {
+        const M runs = stepping & layer_[k].runs;
+        if (any(runs)) end = select(runs, min(end, layer_[k].walk.exit()), end);
+      }
+      end = max(end, begin);
+      for (int k = 0; k < layers_; ++k) {
+        const M runs = stepping & layer_[k].runs;
+        if (any(runs)) layer_[k].walk.pass(runs, begin, end, layer_[k].way);
+      }
+      // What is no longer than a plane is known to: the next cell begins there.
+      empty = stepping & !(end - begin > D(8 * rounding_unit<double>) * end);
+      row_.reached = select(stepping & !empty, end, row_.reached);
+      const F offset = convert<float>(begin - row_.begin), length = convert<float>(end - begin);
+      length_ = select(stepping, length, length_);
+      left_ = select(stepping, row_.left - offset, left_);
+      fold_.budget.set_remaining_length(select(stepping, left_, fold_.budget.remaining_length()));
+      from_ = select(stepping, F(0), from_);
+      const D whole = row_.end - row_.begin;
+      step_begin_ = select(stepping, (begin - row_.begin) / whole, step_begin_);
+      step_end_ = select(stepping, (end - row_.begin) / whole, step_end_);
+      for (int a = 0; a < 3; ++a) {
+        entry[a] = select(stepping, multiply_add(offset, -to_eye_[a], entry[a]), entry[a]);
+      }
+      const M ends = stepping & !(end < row_.end);
+      row_.has_runs = row_.has_runs & !ends;
+      in_row_ = in_row_ & !(lanes & (ends | !stepping));
+    } else {
+      in_row_ = in_row_ & !lanes;
+    }
+    lanes = lanes & !empty;
+    rows_ += select(lanes, I(1), I(0));
+    if (any(lanes)) begin(lanes, stepping, {entry[0], entry[1], entry[2]});
+  }
+
+  /// Begins steps; `partial`: those that may be less than their rows.
+  void begin(M lanes, M partial, const Vec3<F>& entry) noexcept {
     pending_ = pending_ | lanes;
     cap_ = select(lanes, F(1), cap_);
     tried_ = select(lanes, I(0), tried_);
+    const I at = select(lanes, row_.at, I(0));
     M waits(false);
     for (int k = 0; k < layers_; ++k) {
       Layer& layer = layer_[k];
-      const M here = lanes & ((present & I(1 << k)) != I(0));
+      const M here = lanes & ((row_.present & I(1 << k)) != I(0));
       layer.present = (layer.present & !lanes) | here;
       if (none(here)) continue;
-      const float* const parts =
-          job_->part + k * Row::most_lanes * Row::of_a_ray * Row::part_fields;
+      const float* const parts = parts_of(k);
+      const M in_run = here & layer.runs;
       F part[Row::part_fields];
       if (layer.has_light && !layer.has_cells) {
         load_records<Row::part_fields>(parts, at, part);
+      } else if (all(in_run | !here)) {
+        load_fields<Row::run_fields>(parts, at, part);
       } else {
         load_fields<Row::cell_fields>(parts, at, part);
       }
       M shown = here;
       CubicBernstein<F> gradient[3], magnitude;
-      const M in_cells = layer.has_cells ? here & (part[Row::part_kind] == F(Row::cell)) : M(false);
-      typename CellLoads<N>::Ways ways;
+      const M in_cell = layer.has_cells ? here & (part[Row::part_kind] == F(Row::cell)) : M(false);
+      const M in_cells = in_cell | in_run;
+      const M cut = here & partial & !in_run;
+      const F from = convert<float>(step_begin_), to = convert<float>(step_end_);
+      typename CellLoads<N>::Ways& ways = layer.way;
       if (any(in_cells)) {
-        for (int a = 0; a < 3; ++a) {
-          ways.cell[a] = convert<std::int32_t>(part[Row::place + a]);
-          ways.entry[a] = part[Row::entry_in_cell + a];
-          ways.exit[a] = part[Row::exit_in_cell + a];
+        if (any(in_cell)) {
+          for (int a = 0; a < 3; ++a) {
+            const F begin = part[Row::entry_in_cell + a], end = part[Row::exit_in_cell + a];
+            const F way = end - begin;
+            ways.cell[a] =
+                select(in_cell, convert<std::int32_t>(part[Row::place + a]), ways.cell[a]);
+            ways.entry[a] = select(in_cell, select(cut, begin + from * way, begin), ways.entry[a]);
+            ways.exit[a] = select(in_cell, select(cut, begin + to * way, end), ways.exit[a]);
+          }
         }
         shown = (layer.mixture != nullptr ? load_mixture(layer, in_cells, ways)
                                           : load_cells(layer, in_cells, ways, part, waits)) |
@@ -201,9 +301,21 @@ class LayeredPacket {
         layer.present = layer.present & !(here & !shown);
         if (none(shown)) continue;
       }
+      const M curves = shown & !in_cells, cut_curves = curves & cut;
       if (layer.mixture != nullptr) {
-        begin_mixture(k, shown, shown & !in_cells, at);
+        begin_mixture(k, shown, curves, at);
+        if (any(cut_curves)) {
+          for (int c = 0; c < layer.mixture->channels; ++c) {
+            restrict(cut_curves, from, to, layer.gaussians.data[c]);
+          }
+        }
       } else {
+        if (any(cut_curves)) {
+          CubicBernstein<F> data{part[Row::data], part[Row::data + 1], part[Row::data + 2],
+                                 part[Row::data + 3]};
+          restrict(cut_curves & (part[Row::part_kind] == F(Row::curve)), from, to, data);
+          for (int b = 0; b < 4; ++b) part[Row::data + b] = data.b[b];
+        }
         begin(shown, part, layer);
       }
       if (!layer.has_light) continue;
@@ -212,6 +324,10 @@ class LayeredPacket {
         for (int b = 0; b < 4; ++b) {
           for (int c = 0; c < 3; ++c) gradient[c].b[b] = part[Row::gradient + 4 * c + b];
           magnitude.b[b] = part[Row::magnitude + b];
+        }
+        if (any(cut_curves)) {
+          for (CubicBernstein<F>& g : gradient) restrict(cut_curves, from, to, g);
+          restrict(cut_curves, from, to, magnitude);
         }
       }
       const M lit = shown & in_cells;
@@ -222,6 +338,17 @@ class LayeredPacket {
     for (int k = 0; k < layers_; ++k) absent = absent & !layer_[k].present;
     if (any(absent)) leave_out(absent);
     if (any(waits)) wait_for_caller(waits & lanes);
+  }
+
+  /// Restricts a cubic of these lanes to the share [from, to].
+  static void restrict(M lanes, F from, F to, CubicBernstein<F>& f) noexcept {
+    const CubicBernstein<F> there = restrict_to(f, from, to);
+    for (int b = 0; b < 4; ++b) f.b[b] = select(lanes, there.b[b], f.b[b]);
+  }
+
+  /// The parts of a layer's rows.
+  const float* parts_of(int layer) const noexcept {
+    return job_->part + layer * Row::most_lanes * Row::of_a_ray * Row::part_fields;
   }
 
   /// Loads data of cells into their parts. Returns the lanes in which they may absorb; adds those
@@ -269,8 +396,7 @@ class LayeredPacket {
     Layer& layer = layer_[number];
     MixtureLanes<N>& to = layer.gaussians;
     // Bits in the place of floats, in records of four.
-    const auto* const words = reinterpret_cast<const std::int32_t*>(
-        job_->part + number * Row::most_lanes * Row::of_a_ray * Row::part_fields);
+    const auto* const words = reinterpret_cast<const std::int32_t*>(parts_of(number));
     const I field = select(curves, I(Row::primitives_of_curve), I(Row::primitives_of_cell));
     const I word = at * I(Row::part_fields) + field;
     to.set.low = select(lanes, gather(words, word), to.set.low);
@@ -642,6 +768,7 @@ class LayeredPacket {
     alive_ = alive_ & !done;
     pending_ = pending_ & !done;
     waits_ = waits_ & !done;
+    in_row_ = in_row_ & !done;
   }
 
   void wait_for_caller(M lanes) noexcept {
@@ -652,6 +779,7 @@ class LayeredPacket {
   /// Writes the shares of rows that wait for the caller, and the errors allowed for them.
   void ask_caller() noexcept {
     const F length = (F(1) - from_) * length_;
+    const D from = step_begin_ + convert<double>(from_) * (step_end_ - step_begin_);
     fold_.budget.set_remaining_length(
         select(waits_, left_ - from_ * length_, fold_.budget.remaining_length()));
     const F transparency = fold_.transparency();
@@ -659,7 +787,8 @@ class LayeredPacket {
             all = fold_.budget.allowance(length, F(1), transparency);
     for (unsigned left = bits(waits_); left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
-      job_->from[l] = static_cast<double>(from_[l]);
+      job_->from[l] = from[l];
+      job_->to[l] = step_end_[l];
       job_->allowance_flat[l] = static_cast<double>(flat[l]);
       job_->allowance_per_opacity[l] = static_cast<double>(all[l] - flat[l]);
     }
@@ -692,12 +821,24 @@ class LayeredPacket {
     Layer layer_[Row::most_layers];
   };
 
-  M alive_{false};    ///< rays that are not through
-  M pending_{false};  ///< lanes that work on a row
-  M waits_{false};    ///< lanes that wait for the caller
-  I next_{0}, end_{0};
+  /// What lanes know of rows that they take in steps.
+  struct Rows {
+    I at{0}, present{0};
+    F entry[3], left{0}, length{0};
+    M has_runs{false};  ///< of cells: such a row goes on behind `reached`
+    D begin{0}, end{1}, reached{0};
+  };
 
-  // Of the lanes' rows.
+  M alive_{false};    ///< rays that are not through
+  M pending_{false};  ///< lanes that work on a step
+  M waits_{false};    ///< lanes that wait for the caller
+  M in_row_{false};   ///< lanes whose rows have more steps
+  I next_{0}, end_{0};
+  Rows row_;
+  F to_eye_[3];
+
+  // Of the lanes' steps.
+  D step_begin_{0}, step_end_{1};  ///< of their rows
   F length_{1}, left_{0}, place_error_{0}, left_out_{0};
   F from_{0};   ///< the share that is done
   F cap_{1};    ///< where the next piece ends at the latest, of what is left
