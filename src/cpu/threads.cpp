@@ -10,9 +10,21 @@
 #include <tbb/task_group.h>
 
 #include <atomic>
+#include <map>
 #include <optional>
 
 namespace pellucid {
+namespace {
+
+/// Returns the calling thread's arena of so many threads. oneTBB keeps some 50 kB of each arena that
+/// is destroyed until all workers have left it, which takes long where other work keeps the cores
+/// busy; so they are made once.
+tbb::task_arena& arena_of(int threads) {
+  thread_local std::map<int, tbb::task_arena> arenas;
+  return arenas.try_emplace(threads, threads).first->second;
+}
+
+}  // namespace
 
 int default_thread_count() {
   return tbb::info::default_concurrency();
@@ -20,8 +32,7 @@ int default_thread_count() {
 
 ParallelFor parallel_for(int threads) {
   return [threads](int count, const std::function<void(int, int)>& body) {
-    tbb::task_arena arena(threads);
-    arena.execute([&] {
+    arena_of(threads).execute([&] {
       tbb::this_task_arena::isolate([&] {
         tbb::parallel_for(tbb::blocked_range<int>(0, count, 64),
                           [&](const auto& range) { body(range.begin(), range.end()); });
@@ -46,8 +57,7 @@ void take_in_turn(std::size_t count, int threads, const std::function<bool(std::
       if (!body(i)) context.cancel_group_execution();
     }
   };
-  tbb::task_arena arena(threads);
-  arena.execute([&] {
+  arena_of(threads).execute([&] {
     tbb::parallel_for(tbb::blocked_range<int>(0, threads, 1), take_all, tbb::simple_partitioner(),
                       context);
   });
