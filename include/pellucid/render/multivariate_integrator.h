@@ -185,7 +185,9 @@ class MultivariateRayIntegrator {
     const Span& span;
 
     PELLUCID_HD double length() const noexcept { return span.length; }
-    PELLUCID_HD static long most_panels() noexcept { return std::numeric_limits<long>::max(); }
+    /// Rounding alone may take more than the budget has, of data and colors near the ends of
+    /// numbers; a ray takes some 0.1 s until that is given up.
+    PELLUCID_HD static long most_panels() noexcept { return 1 << 16; }
     template <class Allowance>
     PELLUCID_HD PELLUCID_DEVICE_CALL PanelSegment<double> panel(
         double begin, double end, const PanelDemand<double>& demand,
