@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <random>
 #include <utility>
 #include <vector>
@@ -101,7 +102,16 @@ class RandomLayers {
         function(2)}};
   }
 
-  /// Gaussians of two variables, on a grid or a mesh, now and then with a table beside.
+  /// A table of values in [0, 1]; as a factor, its extinctions are factors.
+  TransferFunction table(double most) {
+    scenes::Points points{{0.1 * unit(), most * unit(), random_color(random_)}};
+    for (double at = 0.2 + 0.2 * unit(); at < 1; at += 0.1 + 0.4 * unit()) {
+      points.push_back({at, unit() < 0.3 ? 0 : most * unit(), random_color(random_)});
+    }
+    return TransferFunction(points);
+  }
+
+  /// Gaussians of two variables, tables, or both, on a grid or a mesh; now and then with a factor.
   Layer several_variables() {
     Layer result = scenes::gaussians();
     if (unit() < 0.25) return result;
@@ -114,8 +124,13 @@ class RandomLayers {
       one.extinction = 4 * unit();
       one.color = random_color(random_);
     }
-    const auto function =
-        std::make_shared<const MultivariateTransferFunction>(2, std::move(primitives));
+    std::vector<ChannelTransferFunction> tables;
+    while (tables.size() < 3 && unit() < 0.4) tables.push_back({unit() < 0.5 ? 0 : 1, table(2)});
+    if (!tables.empty() && unit() < 0.5) primitives.clear();
+    std::optional<ChannelTransferFunction> factor;
+    if (unit() < 0.3) factor = {unit() < 0.5 ? 0 : 1, table(1.5)};
+    const auto function = std::make_shared<const MultivariateTransferFunction>(
+        2, std::move(primitives), std::move(tables), std::move(factor));
     if (unit() < 0.7) {
       std::get<ChannelsContent>(result.content).transfer_function = function;
       return result;
@@ -148,7 +163,10 @@ class RandomLayers {
       has_gradient = true;
     } else if (kind < 0.85) {
       result = several_variables();
-      if (unit() < 0.6) result.shading = random_shading(random_);
+      if (unit() < 0.6) {
+        result.shading = random_shading(random_);
+        result.shading->channel = unit() < 0.5 ? 0 : 1;
+      }
     }
     if (has_gradient) {
       if (unit() < 0.5) result.shading = random_shading(random_);

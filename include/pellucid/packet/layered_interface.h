@@ -94,6 +94,7 @@ struct PellucidLayeredJob {
   const PellucidView<PellucidLight>* light;  ///< of each layer; null: unlit
   /// The grids of the variables of each layer whose cells parts name; null: they name none.
   const PellucidPacketJob* const* grid;
+  const std::int32_t* lit_grid;  ///< of each layer, of these the variable whose gradient lights it
   const PellucidView<PellucidLaneMixture>* mixture;  ///< of each layer; null: of one variable
   /// Data of these layers' parts that are no cells: [lane][row], of each variable.
   const float* const* curves;

@@ -123,11 +123,11 @@ std::unique_ptr<const GridLight> GridLight::make(const Layer& layer,
   result->light_ = *light;
   if (layer.gradient_opacity) {
     const LayerLook& look = result->look_;
-    if (!suits_single(*look.extinction_factor(), layer.gradient_opacity->largest_factor(),
-                      steepest_gradient(look, result->volume_))) {
-      return nullptr;
-    }
-    set_factor(look, result->volume_, result->factor_, result->light_);
+    const PiecewiseLinear<double>& factor = *look.extinction_factor();
+    const double largest = layer.gradient_opacity->largest_factor(),
+                 steepest = steepest_gradient(look, result->volume_);
+    if (!suits_single(factor, largest, steepest)) return nullptr;
+    set_factor(factor, largest, steepest, result->factor_, result->light_);
   }
   if (has_surfaces(layer)) {
     result->surfaces_ =
@@ -146,11 +146,10 @@ GridLight::GridLight(const Layer& layer, const std::vector<Light>& lights,
   if (layer.gradient_opacity) magnitude_.emplace(volume_, GradientKind::smooth);
 }
 
-void set_factor(const LayerLook& look, const Volume& volume,
+void set_factor(const PiecewiseLinear<double>& factor, double largest, double steepest,
                 std::optional<BinnedTransferStorage>& storage, PacketLight& result) {
-  storage.emplace(*look.extinction_factor(), steepest_gradient(look, volume));
+  storage.emplace(factor, steepest);
   result.factor = &storage->view();
-  const double largest = look.layer().gradient_opacity->largest_factor();
   result.largest_factor = std::max(static_cast<float>(largest) * 1.0001f, 1.0f);
 }
 

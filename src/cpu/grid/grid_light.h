@@ -41,9 +41,8 @@ double steepest_gradient(const LayerLook& look, const Volume& volume);
 /// Returns whether binary32 tells magnitudes of gradients up to `steepest` apart at the control
 /// points of a factor of at most `largest`.
 bool suits_single(const PiecewiseLinear<double>& factor, double largest, double steepest);
-/// Makes the factor of a layer's extinction, for which suits_single(); `storage` must outlive the
-/// light.
-void set_factor(const LayerLook& look, const Volume& volume,
+/// Takes such a factor; `storage` must outlive the light.
+void set_factor(const PiecewiseLinear<double>& factor, double largest, double steepest,
                 std::optional<BinnedTransferStorage>& storage, PacketLight& result);
 
 /// Returns the largest extinction of a function along data that are off by this, beside their

@@ -110,14 +110,15 @@ bool write_part(const SeenLayer& layer, int number, const LayerStretch& stretch,
     return write_curves(layer.mixture->channels, stretch, range, curves) &&
            (!look.is_lit() || write_gradient(look, stretch, range, to));
   }
-  const CubicBernstein<double> data = channel_on(stretch, 0, range);
+  const CubicBernstein<double> data = channel_on(stretch, layer.variable, range);
   const double least = data.hull_min(), most = data.hull_max();
-  const bool is_constant = least == most && !(stretch.value_error[0] > 0);
+  const double value_error = stretch.value_error[layer.variable];
+  const bool is_constant = least == most && !(value_error > 0);
   to[Row::part_kind] = is_constant ? Row::constant : Row::curve;
   to[Row::rounding] = 0;
   if (is_constant) {
     const Material<double> material =
-        layer.source->functions()[static_cast<std::size_t>(number)].table[0].table.evaluate(least);
+        layer.table[static_cast<std::size_t>(number)]->evaluate(least);
     absorbs = material.extinction > 0;
     to[Row::data] = static_cast<float>(material.extinction);
     to[Row::data + 1] = static_cast<float>(material.color.r);
@@ -126,8 +127,8 @@ bool write_part(const SeenLayer& layer, int number, const LayerStretch& stretch,
   } else {
     const BinnedTransfer& function = *layer.function[static_cast<std::size_t>(number)];
     const float size = largest_size(data);
-    const float rounding = 8 * unit * size + 24 * unit * static_cast<float>(most - least) +
-                           single_above(stretch.value_error[0]);
+    const float rounding =
+        8 * unit * size + 24 * unit * static_cast<float>(most - least) + single_above(value_error);
     if (!(size < 1e30f) || !(2 * rounding < function.narrowest)) return false;
     bool jumps = false;
     absorbs = may_absorb(function, true, static_cast<float>(least) - rounding,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -13,18 +14,23 @@
 
 namespace pellucid {
 
-/// A layer as packets see it.
+/// A layer as packets see it: of one variable, with a function or several to choose from; or a term
+/// of a function of several variables, a table or all of its Gaussians.
 struct SeenLayer {
   const LayerSource* source = nullptr;
-  int first_function = 0;  ///< number of its first one
-  int first_mark = 0;      ///< likewise, of the marks of its isosurfaces
-  bool in_lanes = false;   ///< whether packets are for it at all
+  std::size_t layer = 0;                              ///< of the scene
+  int first_function = 0;                             ///< number of its first one
+  bool in_lanes = false;                              ///< whether packets are for it at all
+  int variable = 0;                                   ///< of its tables
+  std::vector<const PiecewiseLinear<double>*> table;  ///< its functions; none: Gaussians
   std::optional<BinnedTransferStorage> factor;
   std::optional<PacketLight> light;
   std::vector<const BinnedTransfer*> function;  ///< each of its functions
-  std::vector<PellucidPacketJob> grid;  ///< of the cells that its stretches tell, by variable
+  /// Of the cells that its stretches tell: its variables, and that which lights it (lit_grid).
+  std::vector<PellucidPacketJob> grid;
+  int lit_grid = 0;
   std::vector<Gaussian<float>> gaussians;
-  std::optional<LaneMixture> mixture;  ///< of these; none: of one variable
+  std::optional<LaneMixture> mixture;  ///< of these; none: tables
 };
 
 /// Returns a bound on x >= 0 in binary32.

@@ -31,22 +31,17 @@ double largest_of(const PiecewiseLinear<double>& table) {
   return std::max(std::fabs(table.value[0]), std::fabs(table.value[table.count - 1]));
 }
 
-/// Whether lanes are for a function: of one variable, with numbers whose squares binary32 has.
-bool suits_lanes(const MultivariateTransfer<double>& function) {
-  if (!is_one_table(function)) return false;
-  const double largest = largest_of(function.table[0].table);
+/// Returns whether lanes are for a table: numbers whose squares binary32 has.
+bool suits_lanes(const PiecewiseLinear<double>& table) {
+  const double largest = largest_of(table);
   return largest == 0 || is_moderate(largest);
 }
 
-/// Whether a function is a sum of Gaussians of several variables whose places, K (v - c), binary32
-/// knows.
-bool is_mixture(const LayerSource& source) {
-  if (source.functions().size() != 1) return false;
-  const MultivariateTransfer<double>& function = source.functions()[0];
-  if (function.gaussians.count == 0 || function.tables > 0) return false;
+/// Returns whether binary32 knows the places of Gaussians, K (v - c).
+bool suits_lanes(const GaussianMixture<double>& gaussians) {
   const auto suits = [](double x) { return has_moderate_square(std::fabs(x)); };
-  for (int i = 0; i < function.gaussians.count; ++i) {
-    const Gaussian<double>& g = function.gaussians.primitive[i];
+  for (int i = 0; i < gaussians.count; ++i) {
+    const Gaussian<double>& g = gaussians.primitive[i];
     for (int c = 0; c < g.channels; ++c) {
       if (!suits(g.center[c])) return false;
       for (int row = 0; row < g.rows; ++row) {
@@ -57,14 +52,30 @@ bool is_mixture(const LayerSource& source) {
   return true;
 }
 
-/// Whether packets know the factor of a layer's extinction, if it has one.
-bool has_known_factor(const LayerLook& look) {
-  if (look.extinction_factor() == nullptr) return true;
-  const auto* const content = std::get_if<VolumeContent>(&look.layer().content);
-  const auto& factor = look.layer().gradient_opacity;
-  return content != nullptr && factor && look.value_factor() == nullptr &&
-         suits_single(*look.extinction_factor(), factor->largest_factor(),
-                      steepest_gradient(look, *content->volume));
+/// The factor of a layer's extinction: the largest one, and the largest argument.
+struct FactorRange {
+  double largest = 0, steepest = 0;
+};
+
+/// None: nobody knows how large the argument is.
+std::optional<FactorRange> factor_range(const LayerLook& look) {
+  const Layer& layer = look.layer();
+  const auto* const channels = std::get_if<ChannelsContent>(&layer.content);
+  if (const ChannelTransferFunction* const factor = look.value_factor()) {
+    if (channels == nullptr) return std::nullopt;
+    const VolumeStatistics& data = (*channels->channels)[factor->channel].volume->statistics();
+    return FactorRange{channels->transfer_function->largest_factor(),
+                       std::max(std::fabs(look.factor_argument(data.minimum)),
+                                std::fabs(look.factor_argument(data.maximum)))};
+  }
+  const Volume* volume = nullptr;
+  if (const auto* const content = std::get_if<VolumeContent>(&layer.content)) {
+    volume = content->volume.get();
+  } else if (channels != nullptr) {
+    volume = (*channels->channels)[layer.gradient_opacity->channel()].volume.get();
+  }
+  if (volume == nullptr) return std::nullopt;
+  return FactorRange{layer.gradient_opacity->largest_factor(), steepest_gradient(look, *volume)};
 }
 
 /// Returns the variable whose gradient lights a layer.
@@ -117,7 +128,10 @@ std::unique_ptr<const LayeredPackets> LayeredPackets::make(
   if (!is_moderate(result->extent_) || wanted.largest_color > 1e12) return nullptr;
   const bool any =
       std::ranges::any_of(result->seen_, [](const SeenLayer& one) { return one.in_lanes; });
-  if (!any || result->marks_ > Row::most_marks) return nullptr;
+  if (!any || result->marks_ > Row::most_marks ||
+      result->seen_.size() > std::size_t{Row::most_layers}) {
+    return nullptr;
+  }
   return result;
 }
 
@@ -135,20 +149,24 @@ LayeredPackets::LayeredPackets(const std::vector<ClippedLayer>& layers,
   origin_ = place_lights(corners, lights, all);
   extent_ = static_cast<double>(all.farthest);
   double largest_extinction = 0;
-  for (const ClippedLayer& layer : layers) {
-    add(layer, &all);
-    largest_extinction += layer.setup->largest_extinction();
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    add(layers[i], i, all);
+    largest_extinction += layers[i].setup->largest_extinction();
   }
+  // More than packets take (make()).
+  if (seen_.size() > std::size_t{Row::most_layers}) return;
   for (const BinnedTransferStorage& function : functions_) function_.emplace_back(&function.view());
   for (const SeenLayer& one : seen_) {
     light_.emplace_back(one.light ? &*one.light : nullptr);
-    grid_.push_back(one.in_lanes && one.source->cells() != nullptr ? one.grid.data() : nullptr);
+    grid_.push_back(one.grid.empty() ? nullptr : one.grid.data());
+    lit_grid_.push_back(one.lit_grid);
     mixture_.emplace_back(one.mixture ? &*one.mixture : nullptr);
   }
-  job_.layers = static_cast<std::int32_t>(layers.size());
+  job_.layers = static_cast<std::int32_t>(seen_.size());
   job_.functions = function_.data();
   job_.light = light_.data();
   job_.grid = grid_.data();
+  job_.lit_grid = lit_grid_.data();
   job_.mixture = mixture_.data();
   job_.largest_color = std::max(wanted.largest_color, 1.0);
   // A surface is opaque whatever its length.
@@ -158,58 +176,100 @@ LayeredPackets::LayeredPackets(const std::vector<ClippedLayer>& layers,
   kernel_(&job_);
 }
 
-void LayeredPackets::add(const ClippedLayer& layer, const PacketLight* lights) {
-  SeenLayer& one = seen_.emplace_back();
-  one.source = &layer.setup->source();
-  one.first_function = static_cast<int>(functions_.size());
-  const LayerLook& look = one.source->look();
-  one.first_mark = marks_;
+void LayeredPackets::add(const ClippedLayer& layer, std::size_t number, const PacketLight& lights) {
+  const LayerSource& source = layer.setup->source();
+  const LayerLook& look = source.look();
+  first_mark_.push_back(marks_);
   if (look.has_surfaces()) marks_ += static_cast<int>(look.isosurfaces().size()) + 1;
-  const bool is_sum = is_mixture(*one.source);
-  one.in_lanes = has_known_factor(look) && one.source->most_extinction() <= 1e12 &&
-                 (is_sum || std::ranges::all_of(one.source->functions(), [](const auto& function) {
-                    return suits_lanes(function);
-                  }));
+  const std::vector<MultivariateTransfer<double>>& functions = source.functions();
+  const std::size_t first = seen_.size();
+  const auto begin = [&]() -> SeenLayer& {
+    SeenLayer& one = seen_.emplace_back();
+    one.source = &source;
+    one.layer = number;
+    return one;
+  };
+  const bool is_sum = functions.size() == 1 && !is_one_table(functions[0]);
+  if (is_sum) {
+    // Terms of one function are layers that overlap.
+    const MultivariateTransfer<double>& function = functions[0];
+    for (int i = 0; i < function.tables; ++i) {
+      SeenLayer& one = begin();
+      one.variable = function.table[i].channel;
+      one.table = {&function.table[i].table};
+    }
+    if (function.gaussians.count > 0) {
+      SeenLayer& one = begin();
+      for (int i = 0; i < function.gaussians.count; ++i) {
+        one.gaussians.push_back(rounded_to_binary32(function.gaussians.primitive[i]));
+      }
+      one.mixture = {{one.gaussians.data(), function.gaussians.count}, function.channels};
+    }
+  } else {
+    SeenLayer& one = begin();
+    for (const MultivariateTransfer<double>& function : functions) {
+      one.table.push_back(&function.table[0].table);
+    }
+  }
+  bool all = true;
+  for (std::size_t i = first; i < seen_.size(); ++i) all = prepare(seen_[i], lights) && all;
+  // What packets do not know of a part of a layer they do not know of the layer.
+  for (std::size_t i = first; i < seen_.size(); ++i) seen_[i].in_lanes = all;
+}
+
+bool LayeredPackets::prepare(SeenLayer& one, const PacketLight& lights) {
+  const LayerSource& source = *one.source;
+  const LayerLook& look = source.look();
+  one.first_function = static_cast<int>(functions_.size());
+  const bool suits =
+      one.mixture
+          ? suits_lanes(source.functions()[0].gaussians)
+          : std::ranges::all_of(one.table, [](const auto* table) { return suits_lanes(*table); });
+  if (!suits || source.most_extinction() > 1e12) return false;
+  const Volume* const lit_cells = source.cells(lit_variable(look));
   const Reflection<double>* const r = look.reflection();
   if (r != nullptr) {
     // Where a light turns its edge to the direction half-way to a point light is no place that
     // packets know.
-    const Volume* const cells = one.source->cells(lit_variable(look));
-    one.in_lanes = one.in_lanes && has_moderate_square(std::sqrt(r->flat_square)) &&
-                   (cells == nullptr || has_moderate_square(steepest_gradient(look, *cells))) &&
-                   has_moderate_square(static_cast<double>(lights->farthest)) &&
-                   !(lights->points > 0 && has_kink_in_highlight(in_single(*r)));
-  }
-  if (!one.in_lanes) return;
-  int variables = 1;
-  if (is_sum) {
-    const MultivariateTransfer<double>& function = one.source->functions()[0];
-    for (int i = 0; i < function.gaussians.count; ++i) {
-      one.gaussians.push_back(rounded_to_binary32(function.gaussians.primitive[i]));
-    }
-    variables = function.channels;
-    one.mixture = {{one.gaussians.data(), function.gaussians.count}, variables, lit_variable(look)};
-  } else {
-    for (const MultivariateTransfer<double>& function : one.source->functions()) {
-      const PiecewiseLinear<double>& table = function.table[0].table;
-      functions_.emplace_back(table, largest_of(table));
-      one.function.push_back(&functions_.back().view());
+    if (!has_moderate_square(std::sqrt(r->flat_square)) ||
+        (lit_cells != nullptr && !has_moderate_square(steepest_gradient(look, *lit_cells))) ||
+        !has_moderate_square(static_cast<double>(lights.farthest)) ||
+        (lights.points > 0 && has_kink_in_highlight(in_single(*r)))) {
+      return false;
     }
   }
-  for (int c = 0; c < variables && one.source->cells(c) != nullptr; ++c) {
-    set_grid(*one.source->cells(c), one.grid.emplace_back());
-  }
-  if (!look.is_lit()) return;
-  PacketLight& light = one.light.emplace(r != nullptr ? *lights : no_light());
-  if (r != nullptr) light.reflection = in_single(*r);
-  if (const Volume* const cells = one.source->cells()) {
-    light.of_field = r != nullptr && look.layer().shading->gradient == GradientKind::field ? 1 : 0;
-    set_world_gradient(*cells, light);
-  }
+  std::optional<FactorRange> factor;
   if (look.extinction_factor() != nullptr) {
-    const Volume& volume = *std::get<VolumeContent>(look.layer().content).volume;
-    set_factor(look, volume, one.factor, light);
+    factor = factor_range(look);
+    if (one.mixture || !factor ||
+        !suits_single(*look.extinction_factor(), factor->largest, factor->steepest)) {
+      return false;
+    }
   }
+  for (const PiecewiseLinear<double>* const table : one.table) {
+    functions_.emplace_back(*table, largest_of(*table));
+    one.function.push_back(&functions_.back().view());
+  }
+  const int variables = one.mixture ? one.mixture->channels : 1;
+  for (int c = 0; c < variables && source.cells(one.variable + c) != nullptr; ++c) {
+    if (one.variable + c == lit_variable(look)) one.lit_grid = c;
+    set_grid(*source.cells(one.variable + c), one.grid.emplace_back());
+  }
+  if (!one.mixture && lit_cells != nullptr && one.variable != lit_variable(look)) {
+    one.lit_grid = 1;
+    set_grid(*lit_cells, one.grid.emplace_back());
+  }
+  if (!look.is_lit()) return true;
+  PacketLight& light = one.light.emplace(r != nullptr ? lights : no_light());
+  if (r != nullptr) light.reflection = in_single(*r);
+  if (lit_cells != nullptr) {
+    light.of_field = r != nullptr && look.layer().shading->gradient == GradientKind::field ? 1 : 0;
+    set_world_gradient(*lit_cells, light);
+  }
+  if (factor) {
+    set_factor(*look.extinction_factor(), factor->largest, factor->steepest, one.factor, light);
+  }
+  return true;
 }
 
 /// As many rays as a packet has lanes, and what lies ahead of them.
@@ -220,7 +280,7 @@ class LayeredPackets::Packet {
         job_(of.job_),
         state_(static_cast<std::size_t>(job_.state_size)),
         lanes_(static_cast<std::size_t>(job_.lanes)),
-        layers_(of.layers_.size()),
+        layers_(of.seen_.size()),
         head_(lanes_ * Row::of_a_ray * Row::head_fields),
         part_(layers_ * Row::most_lanes * Row::of_a_ray * Row::part_fields),
         curves_(layers_),
@@ -385,8 +445,8 @@ class LayeredPackets::Packet {
       case MergedPart::Kind::doubt:
         set(part.kind == MergedPart::Kind::mark ? Row::mark : Row::doubt);
         head[Row::opacity] = single_above(part.opacity);
-        head[Row::mark_number] = static_cast<float>(of_.seen_[part.layer].first_mark +
-                                                    static_cast<int>(part.isosurface));
+        head[Row::mark_number] =
+            static_cast<float>(of_.first_mark_[part.layer] + static_cast<int>(part.isosurface));
         return true;
       case MergedPart::Kind::medium:
         break;
@@ -402,12 +462,14 @@ class LayeredPackets::Packet {
     int present = 0;
     bool for_lanes = true;
     for (std::size_t k = 0; k < layers_ && for_lanes; ++k) {
-      if (merge.key()[k] < 0) continue;
+      const SeenLayer& layer = of_.seen_[k];
+      const int number = merge.key()[layer.layer];
+      if (number < 0) continue;
       float* const to = &part_[(k * Row::most_lanes * Row::of_a_ray + at) * Row::part_fields];
       bool absorbs = true;
-      float* const curves = of_.seen_[k].mixture ? &curves_[k][at * curve_fields(k)] : nullptr;
-      for_lanes = write_part(of_.seen_[k], merge.key()[k], *merge.stretches()[k], part.range, to,
-                             curves, absorbs);
+      float* const curves = layer.mixture ? &curves_[k][at * curve_fields(k)] : nullptr;
+      for_lanes = write_part(layer, number, *merge.stretches()[layer.layer], part.range, to, curves,
+                             absorbs);
       if (absorbs) present |= 1 << k;
     }
     if (for_lanes && present == 0) {
@@ -443,9 +505,9 @@ class LayeredPackets::Packet {
     double most = 0;
     follow_again(lane, range, [&](const MergedPart& part) {
       double sum = part.left_out;
-      for (std::size_t k = 0; k < layers_; ++k) {
-        if (part.kind == MergedPart::Kind::medium && again_.key()[k] >= 0) {
-          sum += most_extinction(*of_.seen_[k].source, again_.key()[k], *again_.stretches()[k]);
+      for (std::size_t i = 0; i < again_.sources().size(); ++i) {
+        if (part.kind == MergedPart::Kind::medium && again_.key()[i] >= 0) {
+          sum += most_extinction(*again_.sources()[i], again_.key()[i], *again_.stretches()[i]);
         }
       }
       most = std::max(most, sum);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <memory>
 #include <stop_token>
@@ -16,7 +18,7 @@
 namespace pellucid {
 
 /// Follows rays through several layers in packets (packet/layers/layered_packet.h): what
-/// GeneralPath does, for layers of one variable, within estimates. Each ray's streams are merged
+/// GeneralPath does, within estimates. Each ray's streams are merged
 /// one number at a time; what lies on it is integrated in lanes. What these cannot do is left to a
 /// MultivariateRayIntegrator, part by part. Safe to use from any thread.
 class LayeredPackets {
@@ -44,13 +46,17 @@ class LayeredPackets {
   LayeredPackets(const std::vector<ClippedLayer>& layers,
                  const std::vector<LightSource<double>>& lights, const RayTolerance& wanted,
                  bool depth, Kernel kernel);
-  void add(const ClippedLayer& layer, const PacketLight* lights);
+  /// Adds what packets see of a layer.
+  void add(const ClippedLayer& layer, std::size_t number, const PacketLight& lights);
+  /// Returns whether packets are for it.
+  bool prepare(SeenLayer& one, const PacketLight& lights);
 
   const std::vector<ClippedLayer>& layers_;
   const std::vector<LightSource<double>>& lights_;
   const RayTolerance wanted_;
   Kernel kernel_;
-  std::deque<SeenLayer> seen_;  ///< addresses stay
+  std::deque<SeenLayer> seen_;   ///< addresses stay
+  std::vector<int> first_mark_;  ///< of each layer's isosurfaces
   std::deque<BinnedTransferStorage> functions_;
   Vec3<double> origin_;  ///< of places in the packets' world
   double extent_ = 0;    ///< how far layers and lights are from it
@@ -61,6 +67,7 @@ class LayeredPackets {
   std::vector<PellucidView<PellucidLight>> light_;
   std::vector<PellucidView<PellucidLaneMixture>> mixture_;
   std::vector<const PellucidPacketJob*> grid_;
+  std::vector<std::int32_t> lit_grid_;
 };
 
 }  // namespace pellucid

@@ -396,7 +396,9 @@ class ChannelsSource : public LayerSource {
         blocks_(storage_.view()),
         gradients_(look(), [&](int c) -> const Volume& { return *channels_[c].volume; }) {
     functions_.push_back(std::get<ChannelsContent>(task.layer.content).transfer_function->view());
-    in_cells_ = !look().has_surfaces() && is_uniform(channels_.grid());
+    // Of a factor stretches tell the argument.
+    in_cells_ = !look().has_surfaces() && look().extinction_factor() == nullptr &&
+                is_uniform(channels_.grid());
     for (int c = 0; c < channels_.count(); ++c) {
       in_cells_ = in_cells_ && fits_single(*channels_[c].volume) &&
                   suits_lanes(*channels_[c].volume, most_extinction());

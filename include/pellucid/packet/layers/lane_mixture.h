@@ -12,7 +12,6 @@ namespace pellucid {
 struct LaneMixture {
   GaussianMixture<float> gaussians;
   int channels = 0;
-  int light_channel = 0;  ///< whose gradient light needs
 };
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set

@@ -127,7 +127,7 @@ class LayeredPacket {
           has_cells(job.grid[number] != nullptr) {
       transfers.largest_color = static_cast<float>(job.largest_color);
       if (has_cells) {
-        new (&cells) CellLoads<N>(job.grid[number], mixture != nullptr ? mixture->light_channel : 0,
+        new (&cells) CellLoads<N>(job.grid[number], job.lit_grid[number],
                                   has_light ? *seen(job.light[number]) : no_light());
         walk.take(job.walk[number], PacketGrid(job.grid[number][0]).cells);
       }
