@@ -73,10 +73,11 @@ struct PellucidLayerRow {
   }
 };
 
-/// Rays in a grid, one in each lane: in plane coordinates (PacketGrid), their parameter the world
-/// arc length.
+/// Rays in a grid, one in each lane, their parameter the world arc length. Planes of the grid are
+/// at these places; null: in plane coordinates (PacketGrid).
 struct PellucidGridRays {
   double origin[3][PellucidLayerRow::most_lanes], direction[3][PellucidLayerRow::most_lanes];
+  const double* plane[3];
 };
 
 /// Rays through several layers, one in each lane, and what lies ahead of them. A packet is begun

@@ -88,6 +88,19 @@ class GridStream : public LayerStream {
     }
     return begun;
   }
+  /// Returns whether the ray can be told in runs of cells. Beside a plane, gradients that jump
+  /// there may be those of either cell.
+  bool suits_runs(const Interval<double>& inside, bool continuous_gradients) const {
+    return continuous_gradients || !planes_.runs_along_planes(ray_, inside);
+  }
+  /// Tells a run of cells that have the first function.
+  static void tell_run(const Interval<double>& run, LayerStretch& stretch) {
+    stretch.kind = LayerStretch::Kind::run;
+    stretch.begin = run.begin;
+    stretch.end = run.end;
+    stretch.position_error = grid_position_error(run.end);
+    stretch.function = 0;
+  }
   const Affine<double>& grid_from_world() const { return volume_.grid_from_world(); }
   const Ray<double>& ray() const { return ray_; }
   const PlaneDoubt& planes() const { return planes_; }

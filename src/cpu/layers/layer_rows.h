@@ -29,6 +29,7 @@ struct SeenLayer {
   /// Of the cells that its stretches tell: its variables, and that which lights it (lit_grid).
   std::vector<PellucidPacketJob> grid;
   int lit_grid = 0;
+  std::vector<double> plane[3];  ///< of that grid; empty: uniform
   std::vector<Gaussian<float>> gaussians;
   std::optional<LaneMixture> mixture;  ///< of these; none: tables
 };

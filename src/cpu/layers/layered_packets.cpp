@@ -259,6 +259,15 @@ bool LayeredPackets::prepare(SeenLayer& one, const PacketLight& lights) {
     one.lit_grid = 1;
     set_grid(*lit_cells, one.grid.emplace_back());
   }
+  if (!one.grid.empty() && !is_uniform(*source.cells())) {
+    source.cells()->visit([&](const auto& grid) {
+      for (int a = 0; a < 3; ++a) {
+        for (int i = 0; i <= grid.axis[a].cells(); ++i) {
+          one.plane[a].push_back(grid.axis[a].plane(i));
+        }
+      }
+    });
+  }
   if (!look.is_lit()) return true;
   PacketLight& light = one.light.emplace(r != nullptr ? lights : no_light());
   if (r != nullptr) light.reflection = in_single(*r);
@@ -381,9 +390,12 @@ class LayeredPackets::Packet {
     const SeenLayer& seen = of_.seen_[layer];
     if (seen.grid.empty()) return;
     const Ray<double> in_grid = seen.source->cells()->grid_from_world().ray(ray);
+    PellucidGridRays& to = walk_[layer];
     for (int a = 0; a < 3; ++a) {
-      walk_[layer].origin[a][lane] = in_grid.origin[a] + seen.grid[0].padding[a];
-      walk_[layer].direction[a][lane] = in_grid.direction[a];
+      const bool is_uniform = seen.plane[a].empty();
+      to.origin[a][lane] = in_grid.origin[a] + (is_uniform ? seen.grid[0].padding[a] : 0);
+      to.direction[a][lane] = in_grid.direction[a];
+      to.plane[a] = is_uniform ? nullptr : seen.plane[a].data();
     }
   }
 

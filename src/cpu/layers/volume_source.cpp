@@ -43,6 +43,11 @@ void visit_isosurfaces(std::vector<BlockClass>& classes, const BlockRecords& rec
   skip_only_where_both_do(classes, found.view());
 }
 
+/// Returns whether binary32 can count the cells along each axis.
+bool fits_walks(const GridAxis<double> (&axis)[3]) {
+  return std::ranges::all_of(axis, [](const auto& one) { return one.cells() < 1 << 23; });
+}
+
 /// The gradients of a grid that a layer's light and gradient opacity need.
 class GridGradients {
  public:
@@ -107,7 +112,7 @@ class VolumeSource : public LayerSource {
     in_cells_ = !look().has_surfaces() && fits_single(*content_.volume) &&
                 suits_lanes(*content_.volume, most_extinction()) &&
                 (!look().is_lit() || is_uniform(*content_.volume));
-    in_runs_ = in_cells_ && is_uniform(*content_.volume) && fits_walks(grid_.axis);
+    in_runs_ = in_cells_ && fits_walks(grid_.axis);
   }
 
   std::unique_ptr<LayerStream> stream(bool by_cells) const override;
@@ -131,11 +136,6 @@ class VolumeSource : public LayerSource {
   bool in_runs() const { return in_runs_; }
 
  private:
-  /// Returns whether binary32 can count the cells along each axis.
-  static bool fits_walks(const GridAxis<double> (&axis)[3]) {
-    return std::ranges::all_of(axis, [](const auto& one) { return one.cells() < 1 << 23; });
-  }
-
   /// Labels whose functions are looked up without a search.
   static constexpr std::int32_t common_labels = 1024;
 
@@ -177,10 +177,8 @@ class VolumeStream : public GridStream {
   Interval<double> start(const Ray<double>& ray) override {
     if (source_.labels() != nullptr) sides_.start(grid_from_world(), ray);
     const Interval<double> inside = GridStream::start(ray);
-    // Beside a plane, gradients may be those of either cell.
-    in_runs_ = by_cells_ && source_.in_runs() &&
-               (source_.gradients().are_continuous() ||
-                !planes().runs_along_planes(GridStream::ray(), inside));
+    in_runs_ =
+        by_cells_ && source_.in_runs() && suits_runs(inside, source_.gradients().are_continuous());
     return inside;
   }
   void restrict_to_range(Interval<double> range) override {
@@ -234,14 +232,13 @@ class VolumeStream : public GridStream {
       if (!next_run(run_)) return false;
       cut_to_ = run_.begin;
     }
-    stretch.kind = LayerStretch::Kind::run;
-    stretch.begin = cut_to_;
     if (source_.labels() == nullptr) {
-      stretch.end = cut_to_ = run_.end;
-      stretch.position_error = grid_position_error(run_.end);
-      stretch.function = 0;
+      tell_run(run_, stretch);
+      cut_to_ = run_.end;
       return true;
     }
+    stretch.kind = LayerStretch::Kind::run;
+    stretch.begin = cut_to_;
     come_to(cut_to_);
     StructuredWalk<double>::Step part = part_of_label(run_.end);
     stretch.function = source_.function_at(part.cell);
@@ -403,6 +400,9 @@ class ChannelsSource : public LayerSource {
       in_cells_ = in_cells_ && fits_single(*channels_[c].volume) &&
                   suits_lanes(*channels_[c].volume, most_extinction());
     }
+    // Which Gaussians matter differs from block to block.
+    in_runs_ = in_cells_ && functions_[0].gaussians.count == 0 && blocks_.left_out == 0 &&
+               fits_walks(grid_.axis);
     if (look().isosurfaces().empty()) return;
     const auto count = static_cast<std::size_t>(blocks_.records.count());
     classes_.assign(blocks_.classes.block, blocks_.classes.block + count);
@@ -424,6 +424,8 @@ class ChannelsSource : public LayerSource {
     return classes_.empty() ? blocks_.classes.block : classes_.data();
   }
   const GridGradients& gradients() const { return gradients_; }
+  /// Returns whether stretches can be runs of cells.
+  bool in_runs() const { return in_runs_; }
 
  private:
   const Channels& channels_;
@@ -432,7 +434,7 @@ class ChannelsSource : public LayerSource {
   MultivariateBlocks blocks_;
   std::vector<BlockClass> classes_;  ///< with those of isosurfaces; empty: those of blocks_
   GridGradients gradients_;
-  bool in_cells_ = false;
+  bool in_cells_ = false, in_runs_ = false;
 };
 
 class ChannelsStream : public GridStream {
@@ -443,7 +445,20 @@ class ChannelsStream : public GridStream {
         source_(source),
         by_cells_(by_cells) {}
 
+  Interval<double> start(const Ray<double>& ray) override {
+    const Interval<double> inside = GridStream::start(ray);
+    in_runs_ =
+        by_cells_ && source_.in_runs() && suits_runs(inside, source_.gradients().are_continuous());
+    return inside;
+  }
+
   bool next(LayerStretch& stretch) override {
+    if (in_runs_) {
+      Interval<double> run{0, 0};
+      if (!next_run(run)) return false;
+      tell_run(run, stretch);
+      return true;
+    }
     StructuredWalk<double>::Step step;
     int block = 0;
     bool skipped = false;
@@ -478,7 +493,7 @@ class ChannelsStream : public GridStream {
 
  private:
   const ChannelsSource& source_;
-  bool by_cells_;
+  bool by_cells_, in_runs_ = false;
 };
 
 std::unique_ptr<LayerStream> ChannelsSource::stream(bool by_cells) const {
