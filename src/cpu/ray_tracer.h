@@ -51,7 +51,7 @@ class RayTracer {
   virtual ~RayTracer() = default;
 
   /// Returns what the parts gather, each by itself. With the method `exact`, the status may leave a
-  /// part to the general way (left_to_general_path()), and an infinite half_opacity_depth leaves
+  /// part to the general way (left_ray_result()), and an infinite half_opacity_depth leaves
   /// that depth to it, within RayResult::half. Safe to call from any thread.
   virtual std::vector<RayResult> trace(const std::vector<RayPart>& parts,
                                        const TraceOptions& options) const = 0;
@@ -76,13 +76,6 @@ class RayTracer {
   /// None: nothing is known of what is between rays.
   virtual std::optional<Surroundings> surroundings() const { return std::nullopt; }
 };
-
-/// A part that a tracer cannot follow within the tolerance.
-inline RayResult left_to_general_path(RayStatus status = RayStatus::left) {
-  RayResult left;
-  left.status = status;
-  return left;
-}
 
 /// What is to be followed.
 struct TracerTask {

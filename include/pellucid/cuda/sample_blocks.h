@@ -16,8 +16,6 @@ inline constexpr double device_stop_tolerance = 1e-6;
 PELLUCID_HD inline RayResult sample_blocks(const DeviceScene& scene, const Ray<double>& ray_grid,
                                            Interval<double> part) noexcept {
   RayResult result;
-  // Not known: an infinite one would be a ray that is left to somebody.
-  result.error = std::numeric_limits<double>::max();
   const AnyGrid& grid = scene.lit.grid;
   const Interval<double> box = grid_interval(grid.axis, ray_grid, part);
   if (box.empty()) return result;

@@ -67,7 +67,7 @@ PELLUCID_HD PixelOutcome trace_pixel(const DeviceScene& scene, const DeviceImage
     const Ray<double> ray =
         rays == 1 ? scene.camera.ray(column, row) : scene.camera.ray(column, row, n, scene.samples);
     const RayResult found = trace_ray<Look, SingleOnly>(scene, ray, part);
-    if (!(found.error < std::numeric_limits<double>::infinity())) {
+    if (found.status != RayStatus::followed) {
       outcome.fate = SingleOnly ? PixelFate::needs_double : PixelFate::left;
       return outcome;
     }

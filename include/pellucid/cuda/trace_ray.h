@@ -50,7 +50,7 @@ PELLUCID_HD RayResult trace_mesh(const DeviceScene& scene, const Ray<double>& wo
                                  const Integrate& integrate, const Find& find) noexcept {
   MeshHit hits[most_device_hits];
   MeshRay ray;
-  if (!find_hits(scene.mesh, world, hits, ray)) return {};
+  if (!find_hits(scene.mesh, world, hits, ray)) return left_ray_result();
   RayResult result = integrate(ray);
   if (scene.with_depth && result.opacity > 0) {
     find_hits(scene.mesh, world, hits, ray);
@@ -61,9 +61,8 @@ PELLUCID_HD RayResult trace_mesh(const DeviceScene& scene, const Ray<double>& wo
 
 }  // namespace detail
 
-/// Follows a ray of the world, or the part of it in `part` where the look keeps to it (grids). An
-/// infinite error: not followed to its end. With SingleOnly another function is to do it, without
-/// SingleOnly the CPU.
+/// Follows a ray of the world, or the part of it in `part` where the look keeps to it (grids). With
+/// SingleOnly it may be left to the other function (RayStatus), without SingleOnly to the CPU.
 template <DeviceLook Look, bool SingleOnly>
 PELLUCID_HD RayResult trace_ray(const DeviceScene& scene, const Ray<double>& world,
                                 Interval<double> part) noexcept {

@@ -97,7 +97,7 @@ PELLUCID_HD void integrate_blocks(const ClassifiedBlocks& blocks, const Ray<doub
 ///
 /// RayResult::error is at most the tolerance, unless binary32 is forced and cannot keep it, or even
 /// binary64 cannot resolve on which side of a discontinuity of the transfer function the data lie.
-/// With SingleOnly it is infinite where a cell needs binary64: the ray is given up.
+/// With SingleOnly a ray is left where a cell needs binary64 (RayStatus).
 template <bool SingleOnly = false, class Value>
 PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
                                     const ClassifiedBlocks* blocks, const Ray<double>& ray_grid,
@@ -123,7 +123,7 @@ PELLUCID_HD RayResult integrate_ray(const StructuredGrid<Value, double>& grid,
   } else {
     integrate_blocks(*blocks, ray_grid, inside, integrator, each_cell);
   }
-  if (integrator.needs_double()) return {};
+  if (integrator.needs_double()) return left_ray_result();
   RayResult result = integrator.result();
   result.cells = cells;
   if (with_depth) {

@@ -73,4 +73,11 @@ PELLUCID_HD inline RayResult missed_ray_result() noexcept {
   return nothing;
 }
 
+/// Returns the result of a ray that is left to another way.
+PELLUCID_HD inline RayResult left_ray_result(RayStatus status = RayStatus::left) noexcept {
+  RayResult left;
+  left.status = status;
+  return left;
+}
+
 }  // namespace pellucid

@@ -129,7 +129,7 @@ std::vector<RayResult> PacketTracer::trace(const std::vector<RayPart>& in_grid, 
   for (std::size_t i = 0; i < found.size(); ++i) {
     RayResult& to = results[inside.of[i]];
     if (found[i].status == pellucid_left) {
-      to = left_to_general_path();
+      to = left_ray_result();
       continue;
     }
     read_result(found[i], to);

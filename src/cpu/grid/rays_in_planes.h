@@ -24,7 +24,7 @@ inline void leave_rays_in_planes(const Volume& volume, const std::vector<RayPart
       if (inside.empty()) continue;
       planes.start(volume.grid_from_world(), parts[i].ray);
       if (planes.runs_along_planes(ray, inside)) {
-        results[i] = left_to_general_path(RayStatus::for_one_ray);
+        results[i] = left_ray_result(RayStatus::for_one_ray);
       }
     }
   });

@@ -75,7 +75,7 @@ class SurfaceTracer : public RayTracer {
       RayResult& to = results[inside.of[i]];
       if (found[i].status == pellucid_left) {
         // Without a medium lanes would have nothing to do there.
-        to = left_to_general_path(RayStatus::for_one_ray);
+        to = left_ray_result(RayStatus::for_one_ray);
       } else {
         to = {};
         read_result(found[i], to);

@@ -348,7 +348,7 @@ class LayeredPackets::Packet {
     run(PellucidLayeredJob::finish);
     for (std::size_t l = 0; l < used_; ++l) {
       RayResult& to = results[number_[l]];
-      to = left_to_general_path();
+      to = left_ray_result();
       if (gave_up_[l] || !(results_[l].error <= tolerance_[l])) continue;
       read_result(results_[l], to);
       if (of_.marks_ > 0) {

@@ -368,7 +368,7 @@ class SceneTracer : public RayTracer {
     }
     std::vector<RayResult> found = packets() != nullptr
                                        ? packets()->integrate(ahead, tolerances, options.stop)
-                                       : std::vector(ahead.size(), left_to_general_path());
+                                       : std::vector(ahead.size(), left_ray_result());
     for (std::size_t k = 0; k < ahead.size() && !options.stop.stop_requested(); ++k) {
       if (is_left(found[k])) found[k] = made(general).integrate(ahead[k], tolerances[k]);
       journeys[of[k]].add_behind(found[k], ahead[k].range, surfaces_);

@@ -165,7 +165,7 @@ class UnivariateMeshTracer : public MeshTracer {
     wanted.tolerance *= options.share;
     for (const std::size_t i : left) {
       if (!is_whole(rays[i])) {
-        results[i] = left_to_general_path();
+        results[i] = left_ray_result();
         continue;
       }
       results[i] = integrate_mesh_ray(mesh_, fields_.view(), transfer_.tables(),
@@ -250,7 +250,7 @@ class MultivariateMeshTracer : public MeshTracer {
     follow(rays, options.share, true, left, results);
     for (RayResult& result : results) std::swap(result.spans.closed, result.spans.lines);
     // What is left has more hits than a lane has room for, or is beyond what packets can do.
-    for (const std::size_t i : left) results[i] = left_to_general_path();
+    for (const std::size_t i : left) results[i] = left_ray_result();
   }
 
  private:
