@@ -63,8 +63,8 @@ struct MeshContent {
 };
 
 /// A field of one's own, with a function of one or of all of its variables. Its layer has no
-/// projection, and a transform of one with gradient opacity keeps angles. Methods other than
-/// `exact`, devices, ranks, reference pictures and scene files do not take it.
+/// projection, and a transform of one with gradient opacity keeps angles. Devices, ranks, reference
+/// pictures and scene files do not take it.
 struct SourceContent {
   std::shared_ptr<const StretchSource> source;
   AnyTransferFunction transfer_function;
