@@ -65,7 +65,7 @@ std::vector<ChannelSource> all_sources(const ChannelArguments& arguments) {
   return sources;
 }
 
-/// Those of these names, and what they are made of, in the order that they had.
+/// Returns the sources of these names and those from which they are derived, in their old order.
 std::vector<ChannelSource> needed(const std::vector<ChannelSource>& sources,
                                   std::vector<std::string> names) {
   std::vector<ChannelSource> kept;

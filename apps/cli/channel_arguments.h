@@ -11,7 +11,7 @@
 
 namespace pellucid::cli {
 
-/// What `histogram` and `suggest` look at.
+/// Data arguments of `histogram` and `suggest`.
 struct ChannelArguments {
   std::vector<std::string> inputs;    ///< FILE …
   std::vector<std::string> channels;  ///< NAME=SOURCE

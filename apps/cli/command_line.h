@@ -20,12 +20,12 @@ class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
 
-  /// What help shows as its value: "FILE".
+  /// Sets the text that help shows as its value: "FILE".
   Option* option_text(const std::string& text);
   /// The heading that help puts it under.
   Option* group(const std::string& name);
   Option* required();
-  /// Whether one mention may have several values.
+  /// Sets whether one mention may have several values.
   Option* allow_extra_args(bool allowed);
   /// Other values than these are wrong arguments.
   Option* one_of(const std::vector<std::string>& values);
@@ -65,7 +65,7 @@ class CommandLine {
                      const std::string& help);
   Option* add_option(const std::string& names, std::size_t& value, const std::string& help);
   Option* add_flag(const std::string& names, bool& value, const std::string& help);
-  /// What help ends with.
+  /// Sets the text at the end of help.
   void footer(const std::string& text);
 
   /// Takes any arguments, which nobody reads.
@@ -74,8 +74,8 @@ class CommandLine {
   std::string get_name() const;
   bool parsed() const;  ///< whether this is the command that was given
 
-  /// Of the program: reads its arguments. False: help or the version was asked for and printed.
-  /// Throws UsageError.
+  /// Reads the arguments of the program. Returns false if help or the version was asked for and
+  /// printed. Throws UsageError.
   bool parse(int argc, char** argv, const std::string& version);
 
  private:

@@ -26,12 +26,12 @@ struct CompareArguments {
 
 constexpr const char* channel_names[] = {"red", "green", "blue", "alpha"};
 
-/// What the difference file shows, in words.
+/// Description of the difference file, in words.
 struct DifferenceFile {
   std::string path, scaling;
 };
 
-/// How many pixels differ by more than a tolerance.
+/// Number of pixels that differ by more than a tolerance.
 struct ToleranceCheck {
   double tolerance;
   std::size_t pixels_over;

@@ -40,7 +40,7 @@ std::string_view next_line(std::string_view& rest) {
   return line;
 }
 
-/// What a message shows of a cell, so that it stays one readable line.
+/// Returns the part of a cell that a message shows, so that it stays one readable line.
 std::string excerpt(std::string_view text, std::size_t longest = 40) {
   return text.size() <= longest ? std::string(text) : std::string(text.substr(0, longest)) + "...";
 }

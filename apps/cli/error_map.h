@@ -12,7 +12,7 @@ namespace pellucid::cli {
 /// estimated; red where the error is above the tolerance or not a number.
 Image error_picture(const Image& image, double tolerance);
 
-/// What its colors mean, in words.
+/// Returns the meaning of its colors, in words.
 std::string error_scale(double tolerance);
 
 }  // namespace pellucid::cli

@@ -77,7 +77,7 @@ Json axis_json(const HistogramAxis& axis, const Channel& channel) {
           {"edges", std::move(edges)}};
 }
 
-/// Of one axis the counts, of two a list for each bin of the second.
+/// Returns the counts of one axis, or of two axes a list for each bin of the second.
 Json counts_json(const JointHistogram& histogram) {
   if (histogram.axes.size() == 1) return histogram.count;
   const auto row = static_cast<std::ptrdiff_t>(histogram.axes[0].bins);

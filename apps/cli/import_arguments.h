@@ -26,7 +26,7 @@ struct ImportArguments {
   void refuse(const std::string& what) const;
 };
 
-/// What is told of an import, a line each.
+/// Returns the notes on an import, a line each.
 std::vector<std::string> import_lines(const ImportedTransferFunction& imported,
                                       const std::string& file);
 

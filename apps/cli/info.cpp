@@ -35,7 +35,7 @@ struct InfoArguments {
   bool json = false;
 };
 
-/// What is said of a file, gathered once for the text and for the JSON.
+/// Facts of a file, gathered once for the text and for the JSON.
 struct Facts {
   std::size_t bytes = 0;     ///< of all components
   std::vector<double> mean;  ///< of the finite values of each
@@ -205,7 +205,7 @@ std::string text_report(const std::vector<Volume>& components, const Facts& fact
   return text;
 }
 
-/// What is told of each component.
+/// Returns the facts of each component.
 Json values_json(const Volume& volume, double mean, const std::optional<std::size_t>& labels) {
   const auto& statistics = volume.statistics();
   const bool any = statistics.finite > 0;

@@ -9,7 +9,7 @@
 
 namespace pellucid::cli {
 
-/// What `info` says of a volume file in which arrays have names; `chosen` is the one that was read.
+/// Return the arrays of a volume file in which they have names; `chosen` is the one that was read.
 std::string arrays_text(const std::vector<VolumeArray>& arrays, const std::string& chosen);
 Json arrays_json(const std::vector<VolumeArray>& arrays);
 

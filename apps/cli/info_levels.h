@@ -8,7 +8,8 @@
 
 namespace pellucid::cli {
 
-/// What an image of OME-Zarr says of its levels, axes, unit, channels and labels, a line each.
+/// Return the facts of an image of OME-Zarr: its levels, axes, unit, channels and labels, a line
+/// each.
 std::string pyramid_text(const Pyramid& pyramid);
 Json pyramid_json(const Pyramid& pyramid);
 

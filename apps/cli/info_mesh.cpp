@@ -51,7 +51,7 @@ std::vector<NamedCount> count_shapes(const UnstructuredGrid& grid) {
   return counts;
 }
 
-/// Of one component, or of the lengths of vectors, over all points or cells that there are.
+/// Range of one component, or of the lengths of vectors, over all points or cells.
 struct ValueRange {
   double minimum = 0, maximum = 0;
   std::size_t finite = 0, nan = 0, infinite = 0;

@@ -11,7 +11,7 @@
 
 namespace pellucid::cli {
 
-/// What INPUT may be, for help texts.
+/// Kinds of INPUT, for help texts.
 inline constexpr const char* input_help =
     "Volume file (.nii, .nii.gz, .hdr, .img, .mgz, .mgh, .nrrd, .nhdr, .mha, .mhd, .npy, .npz, "
     ".vti, .pvti, .pvtr, .vtk, .slc, .h5, .hdf5, .he5, .nc, .nc4, .cdf, .vdb, .mrc, .map, .rec, "
@@ -36,10 +36,10 @@ struct VolumeOptions {
   ReadOptions read_options() const;
 };
 
-/// Whether the text names the axes of an array: x, y and z, and c or t, in any order.
+/// Returns whether the text names the axes of an array: x, y and z, and c or t, in any order.
 bool is_array_axes(const std::string& text);
 
-/// Where the input comes from: "builtin:NAME[:POINTS]" or a volume file. Throws Error.
+/// Returns the source of the input: "builtin:NAME[:POINTS]" or a volume file. Throws Error.
 FieldSource field_source(const std::string& input, const VolumeOptions& options);
 /// Has notes on what is read printed, unless it is to be quiet.
 void set_notes(FieldSource& field, bool quiet);

@@ -8,7 +8,7 @@
 
 namespace pellucid::cli {
 
-/// What is said of a volume that looks like labels (label_count).
+/// Returns the note on a volume that looks like labels (label_count).
 inline std::string labels_text(std::size_t count) {
   return fmt::format(
       "looks like labels: {} whole numbers that fill regions; interpolating between them shows "

@@ -26,7 +26,7 @@ struct MeshOptions {
   void refuse_q(const std::string& what) const;
 };
 
-/// What INPUT may be besides a volume, for help texts.
+/// Returns the kinds of INPUT besides a volume, for help texts.
 std::string mesh_input_help();
 
 /// Returns whether INPUT is a mesh: by --solution, or by the file.

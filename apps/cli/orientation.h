@@ -7,8 +7,8 @@
 
 namespace pellucid::cli {
 
-/// How the axes of a grid lie in a patient, in a world of LPS (x towards left, y towards posterior,
-/// z towards superior).
+/// Orientation of the axes of a grid in a patient, in a world of LPS (x towards left, y towards
+/// posterior, z towards superior).
 struct Orientation {
   std::string code;       ///< where each index grows to, e.g. "LPS", "RAS", "PIR"
   double oblique_by = 0;  ///< degrees: largest angle between an axis and the direction named

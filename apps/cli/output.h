@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 /// Writes to stdout. Throws Error where that fails (a full disk, a closed pipe).
 void print_text(const std::string& text);
-/// As indented JSON, one line feed at the end. Numbers that are not finite become null.
+/// Prints indented JSON, with one line feed at the end. Numbers that are not finite become null.
 void print_json(const Json& json);
 /// "pellucid: …" on stderr; one line.
 void print_note(const std::string& text);

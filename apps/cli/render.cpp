@@ -96,7 +96,7 @@ Image render_image(const RenderArguments& arguments, const PreparedScene& prepar
   });
 }
 
-/// What the header says of the scale is in the image only while the map is written.
+/// Writes the error map. The image has the scale in its metadata only meanwhile.
 void write_error_map(Image& image, double tolerance, const std::string& path) {
   std::string& scale = image.metadata["pellucid.error_map"];
   if (extension_of(path) == ".exr") {

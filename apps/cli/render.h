@@ -47,7 +47,7 @@ struct RenderArguments {
   MeshOptions mesh;
 
   bool is_scene() const;
-  /// Whether there is no layer but those of --layer and --labels.
+  /// Returns whether there is no layer but those of --layer and --labels.
   bool has_only_added_layers() const {
     return input.empty() && channels.empty() && !(layers.empty() && labels.empty());
   }
@@ -75,7 +75,7 @@ struct PreparedScene {
   double tolerance_asked = 0;             ///< Integration::tolerance is the one used
   /// Share of the picture's largest channel that the tolerance is to be; nothing: it is absolute.
   std::optional<double> relative_tolerance;
-  /// What ranks have of each layer together, where `scene` has the part of one of them; else empty.
+  /// Whole of a layer on all ranks, where `scene` has the part of one of them; else empty.
   struct WholeLayer {
     std::array<int, 3> dimensions{};
     std::size_t nan = 0;
@@ -84,7 +84,7 @@ struct PreparedScene {
   /// The number of different values of each channel that looks like labels, by its name.
   std::vector<std::pair<std::string, std::size_t>> labels;
 
-  /// Of whether an error comes with the picture.
+  /// Returns whether an error comes with the picture.
   bool knows_its_error(const RenderArguments& arguments) const {
     return !arguments.reference && scene.integration.method == Method::exact;
   }
@@ -187,13 +187,13 @@ std::size_t nan_values(const PreparedScene& prepared);
 void visit_fields_of_files(const Layer& layer, const LayerDescription& description,
                            std::size_t index, std::size_t layers,
                            const std::function<void(const std::string&, const Volume&)>& visit);
-/// What makes the picture, and its error, and nothing else: no time, no thread count, so that the
-/// same scene gives the same file.
+/// Adds the arguments that determine the picture, and its error, and nothing else: no time, no
+/// thread count, so that the same scene gives the same file.
 void add_metadata(const RenderArguments& arguments, const PreparedScene& prepared,
                   const RenderReport& report, Image& image);
 /// Nearest white, farthest black, transparent where the pixel is empty.
 Image depth_picture(const Image& image);
-/// What it took and how exact it is, a few lines for people.
+/// Returns the time and the accuracy of a picture, a few lines for people.
 std::vector<std::string> report_lines(const RenderArguments& arguments,
                                       const PreparedScene& prepared, const RenderReport& report);
 /// `largest` is the largest channel of any pixel.

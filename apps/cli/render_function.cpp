@@ -17,8 +17,8 @@ namespace pellucid::cli {
 
 namespace {
 
-/// What a picture leaves to the deviations of an imported function, in its color and in its
-/// extinction each.
+/// Returns the deviation that an imported function may have, in its color and in its extinction
+/// each.
 double import_share(const RenderArguments& arguments, const SceneDescription& description) {
   const double tolerance = arguments.tolerance
                                ? parse_tolerance("--tolerance", *arguments.tolerance)

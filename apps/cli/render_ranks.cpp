@@ -33,7 +33,7 @@ void print_error(const std::string& message) {
   std::fflush(stderr);
 }
 
-/// What one process does with all of the data.
+/// Refuses arguments that need all of the data in one process.
 void refuse_arguments(const RenderArguments& arguments) {
   const std::pair<const char*, bool> given[] = {
       {"--reference", arguments.reference},
@@ -147,7 +147,7 @@ class RankRun {
       }
     });
   }
-  /// What looks like labels on every rank does so as a whole.
+  /// Finds volumes that look like labels: those that do on every rank.
   void find_labels(PreparedScene& prepared) {
     // A line for each volume: its name, and its values, or "no".
     std::string own;

@@ -42,7 +42,8 @@ void check_arguments(const SuggestArguments& arguments, const ChannelSelection& 
   for (const NamedFile& file : outputs) check_writable(file.path);
 }
 
-/// Where the axes are a channel and its gradient magnitude, in this order: boundaries.
+/// Returns whether the axes are a channel and its gradient magnitude, in this order: those show
+/// boundaries.
 bool are_value_and_gradient(const ChannelSelection& selection) {
   if (selection.axes.size() != 2) return false;
   for (const ChannelSource& source : selection.sources) {

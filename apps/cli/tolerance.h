@@ -9,8 +9,8 @@
 
 namespace pellucid::cli {
 
-/// Where pixels are over the tolerance: how many, by how much, and what to do. The exit code is 3
-/// then.
+/// Returns a message if pixels are over the tolerance: how many, by how much, and what to do. The
+/// exit code is 3 then.
 std::optional<std::string> over_tolerance(const RenderReport& report,
                                           const Integration& integration);
 

@@ -26,7 +26,7 @@ struct TransferFunctionArguments {
   bool quiet = false;
 };
 
-/// What the input is, and what is told of it.
+/// Reads the input, and adds notes on it.
 LookDescription read(const TransferFunctionArguments& arguments, double deviation,
                      std::vector<std::string>& notes) {
   const std::string text = read_text_file(arguments.input);

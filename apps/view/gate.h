@@ -8,8 +8,8 @@
 
 namespace pellucid::view {
 
-/// What a request says of where it comes from. A header that is missing is absent; one that is
-/// repeated counts as an empty text, which nothing admits.
+/// Origin of a request, by its headers. A header that is missing is absent; one that is repeated
+/// counts as an empty text, which nothing admits.
 struct Caller {
   std::string_view target;                 ///< of the request line, such as "/TOKEN/style.css"
   std::optional<std::string_view> host;    ///< Host

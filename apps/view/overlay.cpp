@@ -29,7 +29,7 @@ struct Shape {
   std::vector<Handle> handles;
 };
 
-/// Where the data are: the middle and half of the diagonal of a box around them.
+/// Extent of the data: the middle and half of the diagonal of a box around them.
 struct Surroundings {
   Vec3<double> middle{};
   double radius = 0;

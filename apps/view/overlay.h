@@ -32,7 +32,7 @@ class PictureMap {
   double aspect_;
 };
 
-/// What a page draws over the picture besides its own controls.
+/// Elements that a page draws over the picture besides its own controls.
 struct Lettering {
   bool anatomical = false;  ///< L/R, A/P, S/I in place of x, y, z
   std::string unit;         ///< of length; empty: not known

@@ -23,7 +23,7 @@ struct PageMessage {
   std::shared_ptr<const std::string> bytes;
 };
 
-/// What a server tells of its pages. Called by the thread that runs it.
+/// Events of a server's pages. Called by the thread that runs it.
 struct PageEvents {
   std::function<void(PageId)> opened;
   std::function<void(PageId, std::string_view)> received;

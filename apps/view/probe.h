@@ -7,11 +7,11 @@
 
 namespace pellucid::view {
 
-/// What the ray through a position of the picture meets.
+/// Data that the ray through a position of the picture meets.
 struct ProbeResult {
   double opacity = 0;
   double optical_depth = 0;  ///< infinite where nothing behind is seen
-  /// Where half of the opacity is reached; none if the ray meets nothing.
+  /// Position at which half of the opacity is reached; none if the ray meets nothing.
   std::optional<Vec3<double>> position;
   /// One for each channel of a visible layer that has data there.
   struct Value {

@@ -65,13 +65,13 @@ Json box_of(const Scene& scene) {
 
 namespace {
 
-/// Whether a part of the layer's file can be chosen: it is one field of a file.
+/// Returns whether a part of the layer's file can be chosen: it is one field of a file.
 bool is_one_field(const LayerDescription& layer) {
   return !layer.mesh && !layer.labels && !layer.mask && layer.channels.empty() &&
          layer.field.builtin.empty() && has_source(layer.field);
 }
 
-/// Whether there is a file that could hold other arrays or times.
+/// Returns whether there is a file that could hold other arrays or times.
 bool has_file(const LayerDescription& layer) {
   return layer.mesh ? layer.mesh->file != array_in_memory : is_one_field(layer);
 }

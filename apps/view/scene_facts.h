@@ -11,7 +11,7 @@
 
 namespace pellucid::view {
 
-/// What may be chosen of the file of a layer.
+/// Choices within the file of a layer.
 struct FileChoices {
   int components = 1;  ///< steps of time, colors
   std::vector<std::string> arrays{};

@@ -38,7 +38,8 @@ class PageSocket {
   virtual void close() = 0;
 };
 
-/// What the connections of a server share. All of it belongs to the thread that runs `context`.
+/// State that the connections of a server share. All of it belongs to the thread that runs
+/// `context`.
 struct PageServer::State : std::enable_shared_from_this<PageServer::State> {
   State(net::io_context& on, PageEvents of_pages, ServerLimits to_keep)
       : context(on), events(std::move(of_pages)), limits(to_keep), acceptor(on), timer(on) {}

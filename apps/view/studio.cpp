@@ -25,7 +25,7 @@ namespace {
 
 /// A page that sends faster than commands are carried out, for minutes, is not ours.
 constexpr std::size_t most_waiting = 4096;
-/// Of messages. Commands take some twenty times as much memory at worst.
+/// Size of waiting messages. Commands take some twenty times as much memory at worst.
 constexpr std::size_t most_waiting_bytes = std::size_t{16} << 20;
 
 constexpr const char* defect = "; this is a defect of pellucid, please report it";
@@ -36,7 +36,7 @@ bool starts_fit(const Command& command) {
   return suggest != nullptr && suggest->kind == Suggest::Kind::gaussians;
 }
 
-/// Whether a command only asks, so that the frame that is being rendered stays right.
+/// Returns whether a command only asks, so that the frame that is being rendered stays right.
 bool only_asks(const Command& command) {
   return std::holds_alternative<Probe>(command) || std::holds_alternative<Save>(command) ||
          std::holds_alternative<AskHistogram>(command) ||
@@ -51,7 +51,7 @@ bool ends_frame(const Command& command) {
   return !only_asks(command) || starts_fit(command);
 }
 
-/// Whether a command changes what pages are told of the scene besides the camera.
+/// Returns whether a command changes what pages are told of the scene besides the camera.
 bool is_edit(const Command& command) {
   if (starts_fit(command)) return false;
   return std::visit(
@@ -65,7 +65,7 @@ bool is_edit(const Command& command) {
       command);
 }
 
-/// Whether a later command makes an earlier one of the same page needless.
+/// Returns whether a later command makes an earlier one of the same page needless.
 bool replaces(const Command& later, const Command& earlier) {
   if (std::holds_alternative<Probe>(later)) return std::holds_alternative<Probe>(earlier);
   const Edit *const newer = std::get_if<Edit>(&later), *const older = std::get_if<Edit>(&earlier);

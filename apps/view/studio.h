@@ -25,7 +25,7 @@ namespace pellucid::view {
 
 /// Told of the scene after each change.
 using SceneChanged = std::function<void(const SceneDescription&, const Scene&)>;
-/// Where a studio's messages go: to one page, or to all if there is none.
+/// Receiver of a studio's messages: one page, or all if none is given.
 using Send = std::function<void(std::optional<PageId>, PageMessage)>;
 
 /// Owns the scene and renders it, on a thread of its own, for all pages together. Commands are

@@ -38,7 +38,7 @@ void add_ramp(ShapedFunction& function, const RampRange& range) {
   function.nodes = foreign::ramp(*range, function.is_color);
 }
 
-/// Whether this VTK's opacities jump where the sharpness is above 0.99.
+/// Returns whether this VTK's opacities jump where the sharpness is above 0.99.
 bool opacities_jump() {
   static const bool jump = [] {
     vtkNew<vtkPiecewiseFunction> sharp;

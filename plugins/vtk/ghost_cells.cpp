@@ -16,7 +16,7 @@
 namespace pellucid::plugin {
 namespace {
 
-/// How far planes lie below the faces of cells, of a cell.
+/// Distance of planes below the faces of cells, in cells.
 constexpr double below_face = 0x1p-20;
 
 vtkUnsignedCharArray* ghosts_of(vtkDataSet& data) {

@@ -19,7 +19,7 @@ class vtkDataSet;
 
 namespace pellucid::plugin {
 
-/// Whether data are an image or a rectilinear grid.
+/// Returns whether data are an image or a rectilinear grid.
 bool is_grid(vtkDataSet& data);
 /// Returns the number of cells along each axis of an image or a rectilinear grid.
 std::array<int, 3> cells_along(vtkDataSet& data);

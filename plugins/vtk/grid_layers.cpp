@@ -305,7 +305,8 @@ Layer GridTranslator::component_layer(int component) {
   return layer;
 }
 
-/// Whether the property asks for it, and nothing else that needs a gradient or one number of a ray.
+/// Returns whether the property asks for it, and nothing else that needs a gradient or one number
+/// of a ray.
 bool GridTranslator::shows_nearest(int component) {
   if (property_.GetInterpolationType() == VTK_LINEAR_INTERPOLATION) return false;
   if (mapper_.GetBlendMode() == vtkVolumeMapper::COMPOSITE_BLEND && mask_.labels == nullptr &&

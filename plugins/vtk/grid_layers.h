@@ -28,7 +28,7 @@ struct Mask {
   double blend = 1;                ///< the share of a label's own color
 };
 
-/// What pictures of a grid share.
+/// Data that pictures of a grid share.
 struct KeptOfGrids {
   using MaskRecipe =
       std::pair<std::shared_ptr<const Volume>,

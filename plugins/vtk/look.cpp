@@ -90,7 +90,7 @@ TransferFunction sums(const LookRecipe& recipe) {
   return {std::move(points), recipe.opacity_deviation};
 }
 
-/// Of a size: shorter than the data tell apart.
+/// Share of a size that is shorter than the data can resolve.
 constexpr double shortest_share = 1e-6;
 
 double unit_distance(double of_property, double size, Notes& notes) {

@@ -18,7 +18,7 @@ class vtkVolumeProperty;
 
 namespace pellucid::plugin {
 
-/// How VTK means the opacities of a property.
+/// Meaning of the opacities of a property of VTK.
 enum class OpacityMeaning {
   per_unit_distance,  ///< of a layer as thick as the unit distance: images and rectilinear grids
   extinction,         ///< opacity / unit distance is the extinction: unstructured grids
@@ -27,7 +27,7 @@ enum class OpacityMeaning {
   averaged            ///< of a ray; its color is grey: opacity times the place in the data's range
 };
 
-/// What a transfer function is made of. Functions of equal recipes are equal.
+/// Recipe of a transfer function. Functions of equal recipes are equal.
 struct LookRecipe {
   std::vector<JoinedPoint> points;  ///< opacity and color
   OpacityMeaning meaning = OpacityMeaning::per_unit_distance;
@@ -62,8 +62,8 @@ LookRecipe look_recipe(vtkVolumeProperty& property, int component, OpacityMeanin
                        double tolerance, double size, const LookRamps& ramps,
                        FunctionReader& reader, Notes& notes);
 
-/// What a function of dependent components is made of: the last component has the opacity. Colors
-/// are those of the first of two, or of each of the first three of four, of which each has a color
+/// Recipe of a function of dependent components: the last component has the opacity. Colors are
+/// those of the first of two, or of each of the first three of four, of which each has a color
 /// three times as bright, for a third of the extinction.
 struct DependentRecipe {
   LookRecipe opacity;

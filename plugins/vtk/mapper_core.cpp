@@ -31,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 
 /// A renderer that allows a volume so much time wants it still, and exact.
 constexpr double still_seconds = 10;
-/// Of that time, for the rays; the rest is for the display.
+/// Share of that time for the rays; the rest is for the display.
 constexpr double share_for_rays = 0.85;
 /// Every 8th pixel along each axis comes first.
 constexpr int preview_levels = 3;
@@ -95,7 +95,8 @@ class FrameKeeper : public vtkCommand {
   std::vector<vtkSmartPointer<vtkObject>> kept_;
 };
 
-/// Of a picture of optical depths, in which nothing is brighter than 1.
+/// Returns the optical depth of an opacity in a picture of optical depths, in which nothing is
+/// brighter than 1.
 float depth_of(float opacity) {
   constexpr double most = 1 - 1 / std::numbers::e;
   if (!(double{opacity} < most)) return 1;
@@ -396,8 +397,8 @@ void MapperCore::finish_picture(const Scene& scene, Image& image) {
   if (finish.is_composited) raise_opacities(image);
 }
 
-/// What is behind a pixel is at most 1, so that it loses at most what the opacity is raised by. Of
-/// a color over 1, what is over is lost, too.
+/// Raises opacities to the colors, and adds to the error. The color behind a pixel is at most 1,
+/// and loses at most the increase of the opacity. A color over 1 is cut off, too.
 void MapperCore::raise_opacities(Image& image) {
   const double before = outcome.largest_error;
   long long over = 0;

@@ -35,7 +35,7 @@ namespace pellucid::plugin {
 
 inline constexpr int most_threads = 1024;
 
-/// What a mapper can be told beside what VTK's own can.
+/// Settings of a mapper that VTK's own do not have.
 struct Settings {
   double tolerance = default_tolerance;
   Grade grade = Grade::estimated;
@@ -48,23 +48,23 @@ bool set_tolerance(Settings& settings, double tolerance);
 bool set_grade(Settings& settings, int grade);
 void set_threads(Settings& settings, int threads);
 
-/// What is known of the last picture.
+/// Report on the last picture.
 struct Outcome {
   bool exact = false;    ///< whether all of its pixels were rendered by the exact method
   bool sampled = false;  ///< whether it was sampled instead, because frames were asked for in time
-  /// Of any pixel; infinite if it is not exact.
+  /// Largest error of any pixel; infinite if it is not exact.
   double largest_error = std::numeric_limits<double>::infinity();
   long long pixels_over = 0;  ///< pixels whose error is over the tolerance
   double seconds = 0;
 };
 
-/// What becomes of the rays' colors before a window shows them.
+/// Changes of the rays' colors before a window shows them.
 struct Finish {
   /// Shows optical depths, up to 1, as a grey that hides what is behind it, wherever rays meet the
   /// data: the sums of additive blending.
   bool shows_depths = false;
   double scale = 1, bias = 0;  ///< then a color becomes scale · color + bias · opacity
-  /// Whether pictures are put over each other in whole numbers, which overflow where a color is
+  /// True if pictures are put over each other in whole numbers, which overflow where a color is
   /// larger than its opacity, as bright lights make it: opacities are then raised to the color.
   bool is_composited = false;
 
@@ -80,8 +80,8 @@ void set_final_colors(Finish& finish, double window, double level, Notes& notes)
 /// Brings the data of a mapper up to date, as far as it has any.
 void update_inputs(vtkAlgorithm& mapper);
 
-/// What all mappers of this plug-in do: make a scene of a volume, render it, and put the picture
-/// into the window's framebuffer, over what is there and under geometry in front of it.
+/// Base of all mappers of this plug-in: they make a scene of a volume, render it, and put the
+/// picture into the window's framebuffer, over what is there and under geometry in front of it.
 class MapperCore {
  public:
   MapperCore();
@@ -92,7 +92,7 @@ class MapperCore {
   Settings settings;
   Outcome outcome;
   Finish finish;  ///< draw() sets whether it shows depths
-  /// What a mapper knows to be left out, beside what draw() finds.
+  /// Settings that a mapper knows to be left out, beside those that draw() finds.
   Notes left_out;
 
   /// Draws a volume of a grid or of a mesh. What fails is told by the mapper's error event, what is

@@ -20,7 +20,8 @@ class vtkVolume;
 
 namespace pellucid::plugin {
 
-/// What pictures of a mesh share: its tetrahedra are cut again if the grid or its values changed.
+/// Data that pictures of a mesh share. Its tetrahedra are cut again if the grid or its values
+/// changed.
 struct KeptOfMeshes {
   std::shared_ptr<const MeshChannels> mesh;
   vtkSmartPointer<vtkDataArray> array;

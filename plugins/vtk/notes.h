@@ -7,7 +7,7 @@
 
 namespace pellucid::plugin {
 
-/// What a picture leaves out of VTK's settings: one line each.
+/// List of VTK's settings that a picture leaves out: one line each.
 class Notes {
  public:
   void add(std::string line) {

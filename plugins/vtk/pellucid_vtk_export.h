@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What the shared library gives to others.
+/// Mark of the symbols that the shared library exports.
 #define PELLUCID_VTK_EXPORT __attribute__((visibility("default")))

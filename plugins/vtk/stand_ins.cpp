@@ -21,7 +21,7 @@
 namespace pellucid::plugin {
 namespace {
 
-/// What each of the classes below has.
+/// Base of each of the classes below.
 class HasCore {
  public:
   virtual ~HasCore() = default;

@@ -20,9 +20,9 @@
 namespace pellucid::plugin {
 namespace {
 
-/// Of the window of a camera, in pixels.
+/// Largest shift of the window of a camera, in pixels.
 constexpr int largest_shift = 16384;
-/// Of the picture that a window of a camera is a part of: it is kept whole.
+/// Largest number of pixels of the picture of which a camera's window is a part: it is kept whole.
 constexpr double largest_picture = 1e8;
 
 Vec3<double> vector_of(const double v[3]) {
@@ -45,7 +45,7 @@ int pixels_off(double center, int side, Notes& notes) {
   return static_cast<int>(whole);
 }
 
-/// What a matrix of a projection says, of view coordinates to those from -1 to 1.
+/// Frustum of a projection matrix, which maps view coordinates to those from -1 to 1.
 struct Frustum {
   double half_height = 0;     ///< at distance 1, or anywhere if rays are parallel
   double center[2] = {0, 0};  ///< as a camera's WindowCenter

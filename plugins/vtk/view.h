@@ -13,7 +13,7 @@ class vtkRenderer;
 
 namespace pellucid::plugin {
 
-/// How depths of a window's buffer lie along the view direction.
+/// Positions of a window buffer's depths along the view direction.
 struct Depths {
   double near = 0, far = 0;  ///< of depth 0 and depth 1; far may be infinite
   bool is_parallel = false;
@@ -22,7 +22,7 @@ struct Depths {
   double along_view(double depth) const noexcept;
 };
 
-/// What of a scene's picture a renderer's part of the window shows.
+/// Part of a scene's picture that a renderer's part of the window shows.
 struct View {
   Camera camera;
   Depths depths;
@@ -31,7 +31,7 @@ struct View {
   int column = 0, row = 0;    ///< of the window's upper left pixel in the scene's picture
   int left = 0, bottom = 0;   ///< of the renderer's part in the window
 
-  /// Whether the picture is larger than the window's part.
+  /// Returns whether the picture is larger than the window's part.
   bool is_cut() const noexcept { return size.width != width || size.height != height; }
 };
 

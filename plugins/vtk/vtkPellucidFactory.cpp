@@ -29,7 +29,7 @@ vtkPellucidFactory* registered() {
   return nullptr;
 }
 
-/// Whether VTK's own overrides may answer: the first factory that has one is asked.
+/// Returns whether VTK's own overrides may answer: the first factory that has one is asked.
 void let_others(bool answer) {
   vtkObjectFactory::SetAllEnableFlags(answer ? 1 : 0, gpu, "vtkOpenGLGPUVolumeRayCastMapper");
   vtkObjectFactory::SetAllEnableFlags(answer ? 1 : 0, tetrahedra,

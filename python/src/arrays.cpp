@@ -112,7 +112,8 @@ VolumeData copied_values(const py::array& array, const StoredType& stored, const
   return std::move(read_components(memory_source(bytes, name), layout, count, {0, 1}).front());
 }
 
-/// Whether the axes, the fastest first, lie in memory without gaps. Axes of one entry do not count.
+/// Returns whether the axes, the fastest first, lie in memory without gaps. Axes of one entry do
+/// not count.
 bool is_dense(const py::array& array, const std::array<std::size_t, 3>& axes) {
   py::ssize_t expected = array.itemsize();
   for (const std::size_t axis : axes) {

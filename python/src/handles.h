@@ -16,7 +16,7 @@
 #include "pellucid/scene/label_volume.h"
 #include "pellucid/scene/mesh_channels.h"
 
-/// What the Python classes of data and functions hold: the library's shared objects, and what a
+/// Contents of the Python classes of data and functions: the library's shared objects, and what a
 /// saved scene says about them.
 namespace pellucid::python {
 

@@ -95,7 +95,7 @@ class ViewerHandle {
     server_.end();
   }
 
-  /// Whether each layer still has the data that it was given.
+  /// Returns whether each layer still has the data that it was given.
   std::vector<bool> same_data() const {
     const std::lock_guard lock(shared_->mutex);
     std::vector<bool> same;
@@ -144,7 +144,7 @@ class ViewerHandle {
     std::mutex joins{};
   };
 
-  /// What tells a layer's data from others.
+  /// Returns an address that identifies a layer's data.
   static const void* data_of(const Layer& layer) {
     return std::visit(
         [](const auto& content) -> const void* {

@@ -10,14 +10,14 @@
 namespace pellucid {
 namespace {
 
-/// Where faces are between the whole numbers of a grid: the golden section, far from halves, thirds
-/// and quarters.
+/// Position of faces between the whole numbers of a grid: the golden section, far from halves,
+/// thirds and quarters.
 constexpr double between = 0.38196601125010515;
-/// How far faces are from equal shares elsewhere, of the side that is cut.
+/// Distance of faces from equal shares elsewhere, of the side that is cut.
 constexpr double beside = between / 64;
 /// The thinnest brick, of the side that is cut: data are read in bricks, whatever they weigh.
 constexpr double thinnest = 1.0 / 16;
-/// How much longer than others a side must be to be cut where all rays cross the cut: 1 / this.
+/// Inverse of how much longer than others a side must be to be cut where all rays cross the cut.
 constexpr double least_preference = 0.4;
 
 }  // namespace

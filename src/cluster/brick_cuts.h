@@ -5,7 +5,7 @@
 
 namespace pellucid {
 
-/// Where to cut boxes into two of given shares of the weight.
+/// Search for cuts of boxes into two of given shares of the weight.
 class BrickCuts {
  public:
   struct Cut {
@@ -13,7 +13,7 @@ class BrickCuts {
     double position;
   };
 
-  /// As BrickTree::split(). `weights` must outlive the object.
+  /// Takes the arguments of BrickTree::split(). `weights` must outlive the object.
   BrickCuts(const Affine<double>& world_from_frame, const Box<double>& bounds,
             const BrickWeights& weights, bool on_grid, const Vec3<double>& view);
 

@@ -87,7 +87,7 @@ class Pixels {
     }
   }
 
-  /// What a pixel may be off by if none of its rays is off by more.
+  /// Returns the largest error of a pixel none of whose rays has a larger error.
   double most_error(double of_ray) const noexcept {
     return of_ray + reserved_ + 2 * most_ * 0x1p-24;
   }

@@ -11,7 +11,7 @@
 namespace pellucid {
 namespace {
 
-/// What rounding may hide from each of two bricks between which the half lies.
+/// Opacity that rounding may hide from each of two bricks between which the half lies.
 constexpr double beside = 1e-5;
 /// Rays whose depths are reduced at once, in double.
 constexpr std::size_t most_at_once = std::size_t{1} << 20;

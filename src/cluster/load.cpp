@@ -38,7 +38,7 @@ void visit_fields(LayerDescription& layer, const Visit& visit) {
   if (layer.mask) visit(layer.mask->field);
 }
 
-/// How the data of a layer come to the ranks.
+/// Way in which the data of a layer come to the ranks.
 struct LayerPlan {
   bool in_parts = false;
   Volume::Description description;  ///< of the grid, if in parts
@@ -322,7 +322,8 @@ class BrickLoader {
     return corners;
   }
 
-  /// As visible_corners() of a scene: the box of the only layer, or one along the axes.
+  /// Returns the corners that visible_corners() of a scene has: the box of the only layer, or one
+  /// along the axes.
   static std::array<Vec3<double>, 8> around(const std::vector<std::array<Vec3<double>, 8>>& boxes) {
     if (boxes.size() == 1) return boxes[0];
     Vec3<double> lower = boxes[0][0], upper = lower;

@@ -8,7 +8,7 @@
 namespace pellucid {
 namespace {
 
-/// Of the values whose places are in a brick's part of the world.
+/// Counts the NaN among the values whose positions are in a brick's part of the world.
 std::size_t nan_in_region(const Volume& volume, const Affine<double>& transform,
                           const RayRegion& region) {
   if (volume.statistics().nan == 0) return 0;

@@ -12,9 +12,9 @@
 namespace pellucid {
 namespace {
 
-/// Of what is left of a tolerance, what is shared out again: roundings need a little.
+/// Fraction of the remaining tolerance that is shared out again: roundings need a little.
 constexpr double of_the_rest = 0.98;
-/// What the others must be left to be rendered again, as a share of the tolerance.
+/// Fraction of the tolerance that must remain for the others to be rendered again.
 constexpr double least_rest = 0.02;
 /// Rays that are tried first.
 constexpr std::size_t most_tried = 256;
@@ -68,7 +68,7 @@ class SecondLook {
   std::uint64_t count() const noexcept { return count_; }
 
  private:
-  /// Whether this rank's part of a ray exceeds its equal share.
+  /// Returns whether this rank's part of a ray exceeds its equal share.
   std::vector<char> beyond_share() const {
     std::vector<char> failed;
     for (const std::size_t ray : rays_) {

@@ -75,7 +75,7 @@ void keep_voxel(double whole, Layer& layer) {
       std::move(points), GradientOpacity::Unit::world, opacity->channel());
 }
 
-/// Whether light fades as the data say, which a part of them does not.
+/// Returns whether light fades as the data say, which a part of them does not.
 bool asks_data(const Layer& layer) {
   return layer.shading && !layer.shading->flatness && !layer.shading->flat_gradient &&
          grid_of(layer) != nullptr && !std::holds_alternative<LabelContent>(layer.content);

@@ -23,7 +23,7 @@ struct SurveySlab {
 std::vector<SurveySlab> slabs_of(const Volume::Description& description, int rank, int ranks,
                                  std::size_t most_values);
 
-/// Where a uniform grid absorbs.
+/// Regions in which a uniform grid absorbs.
 class Survey {
  public:
   /// `frame_from_grid`, `bounds`: of the weights, which have so many cells.

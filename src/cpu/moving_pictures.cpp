@@ -7,7 +7,7 @@ namespace pellucid {
 namespace {
 
 constexpr double step = 1;
-/// How many times as long exact pictures take at least where sampled ones are preferred.
+/// Least ratio of the times of exact and sampled pictures at which sampled ones are preferred.
 constexpr double least_gain = 1.5;
 
 }  // namespace

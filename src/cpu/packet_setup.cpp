@@ -25,7 +25,7 @@ constexpr PellucidValue value_type() {
   if constexpr (std::is_same_v<Value, double>) return pellucid_f64;
 }
 
-/// Whether this build has the set's kernels (PELLUCID_BUILD_SETS).
+/// Returns whether this build has the set's kernels (PELLUCID_BUILD_SETS).
 bool is_built(InstructionSet set) {
   constexpr const char* built[] = {PELLUCID_BUILT_SETS};
   return set == InstructionSet::scalar ||

@@ -27,40 +27,41 @@ inline double largest_value(const Volume& volume) {
 /// The longest way through the volume, from corner to corner, world length.
 double diagonal(const Volume& volume);
 
-/// Whether squares of the number and of its thousandths stay far from where binary32 ends.
+/// Returns whether squares of the number and of its thousandths stay far from where binary32 ends.
 inline bool is_moderate(double x) {
   return x >= 1e-12 && x <= 1e12;
 }
 
-/// Whether binary32 holds all values of the data's type.
+/// Returns whether binary32 holds all values of the data's type.
 bool fits_single(const Volume& volume);
 
-/// Whether all planes of the volume's grid are equally far apart along each axis.
+/// Returns whether all planes of the volume's grid are equally far apart along each axis.
 bool is_uniform(const Volume& volume);
-/// Whether lanes can load the volume's cells: two values along each axis at least, places near a
-/// block that an int can count, and numbers, extinctions among them, whose squares binary32 has.
+/// Returns whether lanes can load the volume's cells: two values along each axis at least, places
+/// near a block that an int can count, and numbers, extinctions among them, whose squares binary32
+/// has.
 bool suits_lanes(const Volume& volume, double largest_extinction);
-/// Whether packets can go through the volume: suits_lanes(), is_uniform().
+/// Returns whether packets can go through the volume: suits_lanes(), is_uniform().
 bool suits_packets(const Volume& volume, double largest_extinction);
 
-/// Whether no ray takes so many steps of this world length that an int cannot count them.
+/// Returns whether no ray takes so many steps of this world length that an int cannot count them.
 bool has_few_steps(const Volume& volume, double step);
 
 /// The grid's part of a job.
 void set_grid(const Volume& volume, PellucidPacketJob& job);
 
-/// What a packet found of a ray.
+/// Converts the result of a packet for a ray.
 void read_result(const PellucidRayResult& from, RayResult& to);
 
-/// Of a ray that misses the grid's box: so do those beside it, but for the box's edges, and what is
-/// beside these is no pixel to interpolate (ScreenMask).
+/// Returns the result of a ray that misses the grid. Its neighbors miss it too, except at the
+/// silhouette, where ScreenMask forbids interpolation.
 RayResult missing_ray();
 
 /// Parts of rays in the grid's coordinates instead of the world's; their parameter stays the world
 /// arc length.
 std::vector<RayPart> parts_in_grid(const Volume& volume, const std::vector<RayPart>& world);
 
-/// Those of the parts that meet the grid's box, and which of them they are.
+/// Rays of the parts that meet the grid's box, with their indices.
 struct PacketRays {
   std::vector<PellucidRay> ray;
   std::vector<std::size_t> of;
@@ -68,7 +69,7 @@ struct PacketRays {
   PacketRays(const Volume& volume, const std::vector<RayPart>& in_grid);
 };
 
-/// What packets of rays that sample found.
+/// Converts the results of packets of rays that sample.
 void read_sampled(const std::vector<PellucidRayResult>& found, const PacketRays& rays,
                   RayResult* results);
 

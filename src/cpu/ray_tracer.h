@@ -16,7 +16,7 @@
 
 namespace pellucid {
 
-/// Of the tolerance of a ray, for what grids' blocks and layers leave out.
+/// Fraction of a ray's tolerance for extinction that grids' blocks and layers leave out.
 inline constexpr double ray_left_out_share = 1.0 / 32;
 
 /// A part of a ray in the world, whose direction has length 1.
@@ -30,18 +30,19 @@ inline bool is_whole(const RayPart& part) {
   return part.range.begin <= 0 && part.range.end == std::numeric_limits<double>::infinity();
 }
 
-/// How rays are followed.
+/// Options of rays.
 struct TraceOptions {
-  /// Of the tolerance, what is the part's: less than 1 where a ray has others.
+  /// Fraction of the tolerance that the part of a ray has: less than 1 where the ray has other
+  /// parts.
   double share = 1;
-  /// Of that, what the part may be off by: less than 1 where pixels are to be interpolated from it,
-  /// by what RayTracer::surroundings() tell.
+  /// Fraction of that for traced rays: the remainder is kept for pixels that are interpolated with
+  /// the help of RayTracer::surroundings().
   double share_of_rays = 1;
   /// Once it is requested, what a tracer returns does not matter.
   std::stop_token stop{};
 };
 
-/// What follows the rays of a frame, made for its data, transfer function and method. It owns or
+/// Tracer of the rays of a frame, made for its data, transfer function and method. It owns or
 /// shares all that it refers to but its layer.
 class RayTracer {
  public:
@@ -67,7 +68,7 @@ class RayTracer {
     return std::vector<double>(parts.size(), std::numeric_limits<double>::infinity());
   }
 
-  /// What there is to find out between rays.
+  /// Data that are needed to interpolate pixels between rays.
   struct Surroundings {
     const Volume& volume;  ///< whose grid it is
     ClassifiedBlocks blocks;
@@ -77,7 +78,7 @@ class RayTracer {
   virtual std::optional<Surroundings> surroundings() const { return std::nullopt; }
 };
 
-/// What is to be followed.
+/// Layer, lights and options for which a tracer is made.
 struct TracerTask {
   /// In its place (moved_into_place()), of a scene that check_method() accepts. Its clips are not
   /// the tracer's concern. It must outlive the tracer.
@@ -89,17 +90,20 @@ struct TracerTask {
   int threads = 1;  ///< on which what is needed of the data's blocks is made
 };
 
-/// Of a volume with a transfer function. Null where packets have no light for it.
+/// Returns the tracer of a volume with a transfer function. Null if packets do not support its
+/// light.
 std::unique_ptr<const RayTracer> make_univariate_tracer(const TracerTask& task);
-/// Of a volume's isosurfaces. Null where packets do not suit them, or there is more to be seen.
+/// Returns the tracer of a volume's isosurfaces. Null if packets do not suit them, or the layer
+/// shows more.
 std::unique_ptr<const RayTracer> make_surface_tracer(const TracerTask& task);
-/// Of channels with a multivariate transfer function. Null where packets do not suit the rays.
-std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task);
-/// Of a mesh with either function. Null for a function of several variables where packets do not
+/// Returns the tracer of channels with a multivariate transfer function. Null if packets do not
 /// suit the rays.
+std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task);
+/// Returns the tracer of a mesh with either function. Null for a function of several variables
+/// where packets do not suit the rays.
 std::unique_ptr<const RayTracer> make_mesh_tracer(const TracerTask& task);
-/// Of whole rays, by one of the methods for comparison, without depths. Null where packets do not
-/// suit the layer or the method: it is sampled ray by ray.
+/// Returns the tracer of whole rays by one of the methods for comparison, without depths. Null
+/// where packets do not suit the layer or the method: it is sampled ray by ray.
 std::unique_ptr<const RayTracer> make_packet_sampler(const TracerTask& task);
 
 }  // namespace pellucid

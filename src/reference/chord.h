@@ -31,7 +31,7 @@ class Chord {
   Real lower() const { return lower_; }
   Real upper() const { return upper_; }
 
-  /// Where the derivative vanishes inside (0, 1), ascending; at most two.
+  /// Returns the zeros of the derivative inside (0, 1), ascending; at most two.
   std::vector<Real> stationary_points() const;
 
   /// The parameters in (0, 1) at which the data passes through one of the values (ascending, no

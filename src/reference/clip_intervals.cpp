@@ -18,15 +18,16 @@ RayPart both(const RayPart& a, const RayPart& b) {
   return {std::max(a.begin, b.begin), std::min(a.end, b.end)};
 }
 
-/// Where a + b t >= 0.
+/// Returns the part of the ray in which a + b t >= 0.
 RayPart not_negative(Real a, Real b) {
   if (b > 0) return {-a / b, infinity};
   if (b < 0) return {-infinity, -a / b};
   return a >= 0 ? RayPart{-infinity, infinity} : RayPart{infinity, -infinity};
 }
 
-/// Where |from + t · along| <= radius. By bisection from the place nearest to the origin, for the
-/// roots of a quadratic equation lose all digits where `from` is far.
+/// Returns the part of the ray in which |from + t · along| <= radius. By bisection from the place
+/// nearest to the origin, for the roots of a quadratic equation lose all digits where `from` is
+/// far.
 RayPart within(const Real3& from, const Real3& along, Real radius) {
   const Real square = dot(along, along);
   const auto distance = [](const Real3& p) { return std::hypot(p[0], p[1], p[2]); };

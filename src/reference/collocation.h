@@ -22,7 +22,8 @@ class Collocation {
   Values running_integral(const Values& f) const;
   /// From -1 to x in [-1, 1].
   double running_integral(const Values& f, double x) const;
-  /// What the last three coefficients add up to: small where the polynomial is the function.
+  /// Returns the sum of the magnitudes of the last three coefficients: small where the polynomial
+  /// is the function.
   double tail(const Values& f) const;
 
  private:

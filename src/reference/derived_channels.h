@@ -8,7 +8,7 @@
 
 namespace pellucid::reference {
 
-/// What light needs to know of the data beside their values. Its chords follow those of the
+/// Quantities that light needs beside the values of the data. Its chords follow those of the
 /// channels, in this order.
 struct DerivedChannels {
   std::optional<int> gradient_of{};  ///< three chords: the gradient in the world

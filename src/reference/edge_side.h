@@ -16,7 +16,8 @@ class EdgeSides {
   /// along the ray.
   struct Side {
     Real area;
-    /// Of the area, or where that is 0 of that of the moved ray; 0 for edges parallel to the ray.
+    /// Sign of the area, or where that is 0 of that of the moved ray; 0 for edges parallel to the
+    /// ray.
     int sign;
     bool certain;  ///< else neither sign nor area are known well enough
   };

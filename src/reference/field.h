@@ -14,10 +14,10 @@ struct Stretch {
   std::vector<Chord> chords;  ///< one for each channel, then DerivedChannels; none: vacuum
 };
 
-/// What rays see of data.
+/// Data along rays.
 class Field {
  public:
-  /// Whether more is wanted.
+  /// Receiver of stretches; returns whether more are wanted.
   using Visit = std::function<bool(const Stretch&)>;
 
   Field() = default;

@@ -17,7 +17,7 @@ struct Crossing {
   Real3 entry, exit;  ///< in the cell's own coordinates, [0, 1]³
 };
 
-/// Where the planes of a volume's grid stand, and what a ray meets there.
+/// Planes of a volume's grid, and the cells that a ray crosses.
 class Grid {
  public:
   explicit Grid(const Volume& volume);

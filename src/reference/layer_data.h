@@ -21,7 +21,7 @@ struct LayerStretch {
   const Mixture* function;
 };
 
-/// What rays see of one layer. A view of its data, clips and those of the scene.
+/// Data of one layer along rays. A view of its data, clips and those of the scene.
 class LayerData {
  public:
   /// The layer is in its place.

@@ -8,8 +8,8 @@
 namespace pellucid::reference {
 namespace {
 
-/// Where anything begins or ends, or a table is at a control value or turns: between two of these
-/// all layers are smooth.
+/// Returns the parameters at which anything begins or ends, or a table is at a control value or
+/// turns: between two of these all layers are smooth.
 std::vector<Real> ends_of(const std::vector<std::vector<LayerStretch>>& layers) {
   std::vector<Real> ends;
   for (const std::vector<LayerStretch>& list : layers) {

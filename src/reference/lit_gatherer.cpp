@@ -7,11 +7,12 @@
 namespace pellucid::reference {
 namespace {
 
-/// As in MixtureGatherer: beyond it a Gaussian could stand between the nodes, unseen.
+/// Limit as in MixtureGatherer: beyond it a Gaussian could stand between the nodes, unseen.
 constexpr Real localized = 6;
 constexpr double deepest = 1;
 constexpr double tolerance = 1e-12;
-/// Where a function still does not settle, it is discontinuous, on a part of 1e-12 of a piece.
+/// Number of halvings after which a function that does not settle is discontinuous, on a part of
+/// 1e-12 of a piece.
 constexpr int most_halvings = 40;
 
 MixtureSamples samples_of(const std::vector<LitPart>& layers) {

@@ -27,7 +27,7 @@ class LitGatherer {
     Real t_begin, length;
     MixtureSamples samples;
   };
-  /// What was added, for the search of the half-opacity depth.
+  /// Part that was added, for the search of the half-opacity depth.
   struct Mark {
     MixtureSamples samples;
     Real t_begin, length;  ///< a surface has no length

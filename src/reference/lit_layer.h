@@ -27,7 +27,7 @@ class LitLayer {
   LitLayer(const Layer& layer, const std::vector<Clip>& of_scene);
 
   const Layer& layer() const { return layer_; }
-  /// As LayerData::stretches().
+  /// Returns what LayerData::stretches() returns.
   std::vector<LayerStretch> stretches(const RealRay& ray, std::uint64_t& cells,
                                       Real& overlap) const {
     return data_.stretches(ray, cells, overlap);
@@ -40,10 +40,10 @@ class LitLayer {
                              const RayLights& lights) const;
 
  private:
-  /// Whether the medium absorbs nowhere.
+  /// Returns whether the medium absorbs nowhere.
   bool is_clear(const LayerStretch& stretch) const;
   void add_shading_cuts(const RayLights& lights, LitStretch& stretch) const;
-  /// What a factor of the extinction is a function of: the magnitude of a gradient, or a channel.
+  /// Returns the argument of a factor of the extinction: the magnitude of a gradient, or a channel.
   const Chord& argument(const LayerStretch& stretch) const;
 
   const Layer& layer_;

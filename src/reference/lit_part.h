@@ -15,8 +15,8 @@ namespace pellucid::reference {
 /// Returns g / √(|g|² + flat²); 0 where both are.
 Real3 normal_of(const Real3& gradient, Real flat);
 
-/// What becomes of a layer's medium on a piece of a ray: a factor of its extinction, and its
-/// colors in the light.
+/// Changes of a layer's medium on a piece of a ray: a factor of its extinction, and its colors in
+/// the light.
 struct PieceLight {
   Real t_begin, length;         ///< of the piece, w from 0 to 1
   std::optional<Piece> factor;  ///< the factor as the rate of a piece
@@ -37,10 +37,10 @@ class LitPart {
 
   std::pair<LitPart, LitPart> halves() const;
   bool is_clear() const { return medium_.is_clear(); }
-  /// Whether the rates are of a degree that the nodes see exactly.
+  /// Returns whether the rates are of a degree that the nodes see exactly.
   bool is_polynomial() const { return !light_->shading && medium_.exponent_change() == 0; }
   Real exponent_change() const { return medium_.exponent_change(); }
-  /// Whether the part is no longer than twice what its light takes to change anywhere near.
+  /// Returns whether the part is no longer than twice what its light takes to change anywhere near.
   bool is_resolved() const;
   MixtureSamples sample() const;
 

@@ -31,8 +31,8 @@ class Mesh {
   MeshTree tree_;
 };
 
-/// Of crossings in order: the length of the ray that is in two tetrahedra at once, and that between
-/// first and last that is in none.
+/// Return of crossings in order the length of the ray that is in two tetrahedra at once, and that
+/// between first and last that is in none.
 Real overlap_of(const std::vector<TetrahedronCrossing>& crossings);
 Real gap_of(const std::vector<TetrahedronCrossing>& crossings);
 

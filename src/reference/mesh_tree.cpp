@@ -12,7 +12,7 @@ namespace {
 using Bounds = MeshTree::Bounds;
 
 constexpr std::size_t leaf_size = 4;
-/// How far a box is widened for a ray, of the distances that occur: well above the rounding.
+/// Widening of a box for a ray, as a share of the distances that occur: well above the rounding.
 constexpr double margin = 1e-12;
 
 Bounds joined(const Bounds& p, const Bounds& q) {
@@ -24,7 +24,7 @@ Bounds joined(const Bounds& p, const Bounds& q) {
   return result;
 }
 
-/// Whether the ray meets the box, widened, at t >= 0.
+/// Returns whether the ray meets the box, widened, at t >= 0.
 bool meets(const RealRay& ray, const Bounds& bounds, Real widening) {
   Real begin = 0, end = std::numeric_limits<Real>::infinity();
   for (int a = 0; a < 3; ++a) {
@@ -43,7 +43,7 @@ bool meets(const RealRay& ray, const Bounds& bounds, Real widening) {
   return begin <= end;
 }
 
-/// Of the box's corners from the ray's origin, at most.
+/// Returns a bound on the distance of the box's corners from the ray's origin.
 Real farthest(const RealRay& ray, const Bounds& bounds) {
   Real sum = 0;
   for (int a = 0; a < 3; ++a) {

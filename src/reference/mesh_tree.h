@@ -24,7 +24,8 @@ class MeshTree {
  private:
   struct Node {
     Bounds bounds;
-    /// Of `order_`, in leaves; inner nodes have none, and their children at `child` and after it.
+    /// Range of `order_`, in leaves; inner nodes have none, and their children at `child` and after
+    /// it.
     std::size_t begin = 0, end = 0;
     std::size_t child = 0;
   };

@@ -14,7 +14,7 @@ namespace pellucid::reference {
 class Mixture {
  public:
   explicit Mixture(const MultivariateTransferFunction& function);
-  /// Of a function of the first channel.
+  /// Makes a mixture of a function of the first channel.
   explicit Mixture(const std::vector<TransferFunction::Point>& points);
 
   struct ChannelTable {

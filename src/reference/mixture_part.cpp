@@ -11,7 +11,7 @@ namespace {
 /// e^-51 = 7e-23.
 constexpr Real invisible = -51;
 
-/// Of the function of [0, 1] whose values at the nodes are given.
+/// Returns the mean of the function of [0, 1] whose values at the nodes are given.
 double mean(const Collocation::Values& values) {
   return 0.5 * Collocation::rule().integral(values);
 }

@@ -11,17 +11,17 @@
 
 namespace pellucid::reference {
 
-/// What a mixture does along a part, at the nodes of Collocation's rule. Rates are for the whole
+/// Rates of a mixture along a part, at the nodes of Collocation's rule. Rates are for the whole
 /// part: extinction times its length.
 struct MixtureSamples {
   Collocation::Values gaussians{};             ///< rate of the primitives
   Collocation::Values rate{};                  ///< of all terms
   std::array<Collocation::Values, 3> light{};  ///< Σ rate · color of all terms
 
-  /// Of all terms, or of the primitives alone.
+  /// Return the depth of all terms, or of the primitives alone.
   double depth() const;
   double gaussian_depth() const;
-  /// Of the share s of the part, from its front.
+  /// Returns the depth of the share s of the part, from its front.
   double depth_to(double s) const;
   /// The share of the part in front of which the depth grows from `before` to `target`.
   double share_at_depth(double before, double target) const;
@@ -48,7 +48,7 @@ class MixturePart {
 
   Real t_begin() const { return t_begin_; }
   Real length() const { return length_; }
-  /// Whether nothing absorbs.
+  /// Returns whether nothing absorbs.
   bool is_clear() const { return gaussians_.empty() && tables_.empty(); }
   /// The most that the exponent of any primitive changes by, or more.
   Real exponent_change() const;

@@ -9,13 +9,13 @@
 
 namespace pellucid::reference {
 
-/// What light makes of a color: factor ∘ color + added.
+/// Color in light: factor ∘ color + added.
 struct Reflection {
   Rgb<double> factor{1, 1, 1}, added{};
 };
 
-/// Where functions along a ray are nearly singular: they change within about `width` of t. World
-/// arc length.
+/// Position at which functions along a ray are nearly singular: they change within about `width` of
+/// t. World arc length.
 struct Bend {
   Real t, width;
 };
@@ -35,7 +35,7 @@ class RayLights {
   /// a product |n·l| or |n·h| is 0, and where the ray passes a light. Some of these are none.
   void add_kinks(const Shading& shading, const GradientCubics& gradient, Real t_begin, Real length,
                  std::vector<Real>& kinks) const;
-  /// Where the ray passes lights nearby.
+  /// Returns the positions at which the ray passes lights nearby.
   const std::vector<Bend>& bends() const { return bends_; }
 
  private:

@@ -23,7 +23,7 @@ std::unique_ptr<const Field> field_of(const Channels& channels) {
   return std::make_unique<GridField>(volumes);
 }
 
-/// Whether the scene is one field or mesh, shown by its function and nothing else.
+/// Returns whether the scene is one field or mesh, shown by its function and nothing else.
 bool is_plain(const Scene& scene) {
   if (scene.layers.size() != 1 || !scene.clips.empty() || scene.backdrop) return false;
   const Layer& layer = scene.layers.front();

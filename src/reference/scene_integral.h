@@ -19,7 +19,7 @@ namespace pellucid::reference {
 /// The volume rendering integral through data with a transfer function. A view of both.
 class SceneIntegral {
  public:
-  /// Of a scene that check_data() accepts.
+  /// Prepares the integral of a scene that check_data() accepts.
   explicit SceneIntegral(const Scene& scene);
   SceneIntegral(const Volume& volume, const TransferFunction& transfer_function);
   SceneIntegral(const Channels& channels, const MultivariateTransferFunction& transfer_function);
@@ -34,11 +34,11 @@ class SceneIntegral {
                             Real end = std::numeric_limits<Real>::infinity()) const;
 
  private:
-  /// Of one field without clips.
+  /// Data of one field without clips.
   std::unique_ptr<const Field> field_;
   std::optional<Table> table_;  ///< or
   std::optional<Mixture> mixture_;
-  /// Of everything else: the layers in their places.
+  /// Data of all other scenes: the layers in their places.
   std::vector<std::unique_ptr<const Layer>> layers_;
   std::vector<std::unique_ptr<const LayerData>> data_;  ///< or
   std::vector<std::unique_ptr<const LitLayer>> lit_;    ///< if any of them is_lit()

@@ -15,7 +15,7 @@ namespace {
 /// Relative rounding of positions and of data, well above that of Real.
 constexpr Real rounding = 1e-15L;
 
-/// How far apart two positions may be that are the same.
+/// Returns the largest distance of two positions that count as one.
 Real same_position(const RealRay& ray, Real t) {
   return 10 * rounding * (length(ray.origin) + std::abs(t));
 }

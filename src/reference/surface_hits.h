@@ -7,7 +7,7 @@
 
 namespace pellucid::reference {
 
-/// Where a ray meets a surface.
+/// Crossing of a ray and a surface.
 struct SurfaceHit {
   Real t;  ///< world arc length
   double opacity;

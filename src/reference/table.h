@@ -25,7 +25,7 @@ class Table {
   /// The interval that holds v; at a control value the one on its right.
   TableInterval interval(Real v) const;
   Real extinction(Real v) const;
-  /// Whether the extinction is 0 for all values in [lower, upper].
+  /// Returns whether the extinction is 0 for all values in [lower, upper].
   bool is_clear(Real lower, Real upper) const;
   /// The control values, ascending, each once.
   const std::vector<Real>& values() const { return values_; }

@@ -11,7 +11,7 @@
 
 namespace pellucid {
 
-/// What the parts of a box weigh: numbers on a lattice of equal cells, x fastest.
+/// Weights of the parts of a box: numbers on a lattice of equal cells, x fastest.
 struct BrickWeights {
   std::array<int, 3> cells{0, 0, 0};
   std::vector<double> weight;  ///< >= 0

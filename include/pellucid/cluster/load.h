@@ -11,7 +11,7 @@
 
 namespace pellucid {
 
-/// What bricks have in equal parts.
+/// Quantity that is shared equally among the bricks.
 enum class BrickBalance {
   data,  ///< the volume of the data, and with it memory
   work,  ///< what absorbs; a brick has at most twice its part of the volume

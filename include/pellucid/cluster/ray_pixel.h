@@ -5,7 +5,7 @@
 
 namespace pellucid {
 
-/// What a ray gathers in a part of the world, as ranks exchange it: premultiplied linear RGBA, its
+/// Result of a ray in a part of the world, as ranks exchange it: premultiplied linear RGBA, its
 /// error, and 1 if the error is an estimate, else 0.
 struct RayPixel {
   float red = 0, green = 0, blue = 0, opacity = 0;

@@ -14,7 +14,7 @@ namespace pellucid {
 /// Data values beyond those of a brick's cells that gradients at these need.
 inline constexpr int gradient_layers = 1;
 
-/// Where the data of a layer lie: a box in coordinates of its own.
+/// Extent of the data of a layer: a box in coordinates of its own.
 struct DataExtent {
   Affine<double> world_from_data;  ///< with the transform of the layer
   Box<double> box;

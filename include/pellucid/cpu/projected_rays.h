@@ -19,7 +19,8 @@ struct RayValue {
   double lower = 0, upper = 0;
   double length = 0, length_error = 0;  ///< of the ray in the data; of sums only
   bool has_data = false;
-  /// Whether rounding decides if the ray meets data, or the data have two values: nothing is known.
+  /// True if rounding decides whether the ray meets data, or which of two values they have: nothing
+  /// is known.
   bool is_unknown = false;
   long cells = 0;  ///< visited
 };
@@ -28,9 +29,9 @@ struct RayValue {
 /// can be joined: numbers of each ray, row by row.
 struct ProjectedRays {
   LayerProjection projection = LayerProjection::maximum;
-  /// Of extremes the value and its bounds, infinite where there are no data; joined by the larger
-  /// number, of minima by the smaller. Of means and sums the sum and its bounds; joined by
-  /// addition.
+  /// Results by ray: of extremes the value and its bounds, infinite where there are no data; joined
+  /// by the larger number, of minima by the smaller. Of means and sums the sum and its bounds;
+  /// joined by addition.
   std::vector<double> value, lower, upper;
   std::vector<double> length, length_error;  ///< of means; joined by addition
   std::vector<double> data, unknown;         ///< 0 or 1; joined by the larger

@@ -17,11 +17,11 @@
 
 namespace pellucid {
 
-/// How packets of rays traverse Gaussians: in steps that resolve their variation along the ray, or
-/// cell by cell.
+/// Way in which packets of rays traverse Gaussians: in steps that resolve their variation along the
+/// ray, or cell by cell.
 enum class GaussianMarch { steps, cells };
 
-/// Where rays are followed.
+/// Processor that follows the rays.
 enum class Device {
   cpu,
   cuda,     ///< a card of NVIDIA
@@ -49,8 +49,8 @@ struct TileResult {
 /// Upper limit of RenderOptions::preview.
 inline constexpr int largest_preview = 8;
 
-/// How render() uses the machine, and what it computes beside the color. The image does not depend
-/// on the number of threads.
+/// Options of render(): its use of the machine, and its outputs beside the color. The image does
+/// not depend on the number of threads.
 struct RenderOptions {
   int threads = 0;     ///< 0: one per core
   bool depth = false;  ///< fill Image::depth; projections have none
@@ -58,8 +58,9 @@ struct RenderOptions {
   /// Fill Image::values. render() throws Error unless exactly one visible layer is projected and a
   /// pixel has one ray.
   bool values = false;
-  /// Where rays are followed. What a card cannot do yet is done by the CPU (RenderReport::device).
-  /// render() throws Error if there is no card, no driver, or no part of the library for it.
+  /// Processor that follows the rays. What a card cannot do yet is done by the CPU
+  /// (RenderReport::device). render() throws Error if there is no card, no driver, or no part of
+  /// the library for it.
   Device device = Device::cpu;
   /// Instruction set for packets of rays; none: the fastest that the machine has. render() throws
   /// Error if the machine lacks it.
@@ -95,7 +96,8 @@ struct RenderReport {
   double seconds = 0;
   double setup_seconds = 0;  ///< of `seconds`: until the first ray
   int threads = 0;
-  /// What was done where, in words, if RenderOptions::device is not the CPU; else empty.
+  /// Account of the work done by each processor, in words, if RenderOptions::device is not the CPU;
+  /// else empty.
   std::string device;
   std::uint64_t rays = 0;         ///< traced rays
   std::uint64_t cells = 0;        ///< cells visited (exact) or samples taken (the others)

@@ -32,7 +32,7 @@ class RunningFrame {
   /// Returns whether the threads are done: with the image, or because of an error or cancel().
   bool finished() const noexcept;
 
-  /// How far the frame is.
+  /// Progress of the frame.
   struct State {
     double fraction = 0;  ///< of the pixels that are final
     /// The finest level of RenderOptions::preview that is complete; -1: none is yet. Level n has

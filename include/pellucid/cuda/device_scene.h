@@ -13,7 +13,7 @@
 
 namespace pellucid {
 
-/// What a device follows rays through: one function of trace_pixel.h each.
+/// Kind of data through which a device follows rays: one function of trace_pixel.h each.
 enum class DeviceLook : std::uint8_t {
   grid,          ///< one variable on a grid
   lit_grid,      ///< the same in light, or with gradient opacity
@@ -34,7 +34,7 @@ struct DeviceScene {
   bool with_depth = false;
   bool single_first = false;  ///< cells in binary32; rays that need binary64 go to a queue
   double sampling_step = 0;   ///< world length, of the midpoint sampler; 0: exact
-  /// Where rays end: of each pixel its depth, and the color behind it; null: nowhere.
+  /// Ends of the rays: the depth of each pixel, and the color behind it; null: nowhere.
   const float* backdrop_depth = nullptr;
   const float* backdrop_color = nullptr;  ///< four numbers a pixel
   // Of the layer.
@@ -75,7 +75,7 @@ struct PixelQueue {
   std::uint32_t* pixel = nullptr;  ///< room for the pixels of a lattice
 };
 
-/// What a device counted. All are sums or maxima of what pixels have: their order does not matter.
+/// Counts of a device. All are sums or maxima of what pixels have: their order does not matter.
 struct DeviceCounts {
   std::uint64_t in_double = 0;      ///< length of the queue of pixels that need binary64
   std::uint64_t left = 0;           ///< length of the queue of pixels that the device cannot do
@@ -87,7 +87,7 @@ struct DeviceCounts {
                 cells_in_double = 0;
 };
 
-/// What a device is to do, in its own memory.
+/// Task of a device, in its own memory.
 struct DeviceTask {
   PixelLattice pixels;
   DeviceImage image;

@@ -5,7 +5,7 @@
 
 namespace pellucid {
 
-/// What became of a pixel.
+/// State of a pixel.
 enum class PixelFate : std::uint8_t {
   stored,
   needs_double,  ///< binary32 is not accurate enough for one of its cells

@@ -13,8 +13,8 @@ namespace pellucid {
 /// Hits of a mesh's boundary that a ray has room for; with more it is left to the CPU.
 inline constexpr int most_device_hits = 64;
 
-/// Of the tolerance of a ray, for extinction that blocks and layers leave out: ray_left_out_share
-/// of the CPU's renderer.
+/// Fraction of a ray's tolerance for extinction that blocks and layers leave out:
+/// ray_left_out_share of the CPU's renderer.
 inline constexpr double device_left_out_share = 1.0 / 32;
 
 namespace detail {

@@ -11,7 +11,7 @@
 
 namespace pellucid {
 
-/// What a legend says of a layer: the colors of its values, of its surfaces or of its labels.
+/// Legend of a layer: the colors of its values, of its surfaces or of its labels.
 struct ColorBar {
   struct Entry {
     std::string name;

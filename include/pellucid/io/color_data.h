@@ -7,8 +7,8 @@
 
 namespace pellucid {
 
-/// What a file says of the colors at its points: sRGB signals red, green and blue of bytes or of 16
-/// bits, perhaps with an opacity behind them.
+/// Colors at the points of a file: sRGB signals red, green and blue of bytes or of 16 bits, perhaps
+/// with an opacity behind them.
 struct ColorOutline {
   int components = 0;  ///< 3 or 4; 0: the file holds no colors
   double largest = 0;  ///< the number of full light: 255 or 65535

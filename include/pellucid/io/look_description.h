@@ -10,7 +10,7 @@
 
 namespace pellucid {
 
-/// How a layer reflects light, as written.
+/// Reflection of light by a layer, as written.
 struct ShadingDescription {
   Shading values;       ///< its `channel` is ignored
   std::string channel;  ///< empty: the first variable
@@ -38,8 +38,8 @@ struct SliceDescription {
   Vec3<double> point{};
   Vec3<double> normal{0, 0, 1};
   double opacity = 1;
-  /// Of one variable. None: the layer's function, or if that is of several variables a grey ramp
-  /// over the range of the data.
+  /// Function of one variable. None: the layer's function, or if that is of several variables a
+  /// grey ramp over the range of the data.
   std::optional<TransferFunctionDescription> colors;
   std::string channel;  ///< empty: the first variable
 };

@@ -13,7 +13,7 @@
 
 namespace pellucid {
 
-/// What to read from a mesh file.
+/// Selection of data in a mesh file.
 struct MeshReadOptions {
   /// Reads the time step nearest to this time; none: the first.
   std::optional<double> time;

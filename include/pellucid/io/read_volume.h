@@ -48,7 +48,7 @@ struct ReadOptions {
   std::function<void(const std::string&)> note;
 };
 
-/// What a file's header says of a volume.
+/// Description of a volume by its file's header.
 struct VolumeOutline {
   Volume::Description description;
   bool reads_parts = false;  ///< whether a part is read without the rest (ReadOptions::part)
@@ -109,8 +109,8 @@ struct VolumeArray {
   std::vector<VolumeStatistics> components;
   int more_components = 0;        ///< components beyond the 64 that are read for the statistics
   std::string unreadable_reason;  ///< why it cannot be read; empty: it can
-  /// Whether it is read if none is selected: the array that the file marks as its scalars, else the
-  /// first array of points with one component, else the first array.
+  /// True if it is read where none is selected: the array that the file marks as its scalars, else
+  /// the first array of points with one component, else the first array.
   bool is_default = false;
 };
 /// Returns all arrays of a file whose format names them, else none. Reads all of their values.

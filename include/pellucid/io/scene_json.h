@@ -60,8 +60,8 @@ struct LayerDescription {
   std::optional<LabelSource> labels;    ///< replaces all of these
   /// None: nothing but the surfaces is visible if there are any, else made from the data.
   std::optional<TransferFunctionDescription> transfer_function;
-  /// Of a function of one variable, the default included. complete_description() writes the points
-  /// that it gives; scene files have those.
+  /// Change of a function of one variable, the default included. complete_description() writes the
+  /// points that it gives; scene files have those.
   FunctionChange function_change;
   std::optional<MaskSource> mask;
   Affine<double> transform;
@@ -92,7 +92,7 @@ struct SceneDescription {
   /// because the tolerance depends on the picture.
   std::optional<double> relative_tolerance;
   std::optional<Background> background;
-  /// Whether a .png keeps its transparency; if not, one without a background gets
+  /// True if a .png keeps its transparency; if not, one without a background gets
   /// calm_background().
   bool is_transparent = false;
   std::filesystem::path backdrop;  ///< an .exr with depth (Scene::backdrop); may be empty

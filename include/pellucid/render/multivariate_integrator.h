@@ -157,10 +157,10 @@ class MultivariateRayIntegrator {
 
  private:
   static constexpr int most_cuts = 60;
-  /// What is proved of a ray whose tolerance cannot be.
+  /// Tolerance that is proved of a ray where its own cannot be.
   static constexpr double coarse_tolerance = 1e-3;
 
-  /// What a panel may cost.
+  /// Error that a panel may use.
   struct Allowance {
     const RayBudget<double>& budget;
     double length, transparency, least;

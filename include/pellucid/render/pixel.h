@@ -59,7 +59,7 @@ class PixelMean {
   int count_ = 0;
 };
 
-/// What the pixels of a frame have in common when they are stored.
+/// Limits that all pixels of a frame share when they are stored.
 struct PixelLimits {
   double reserved = 0;       ///< of the tolerance: what the transfer function is off by
   double largest_color = 1;  ///< that a pixel can have

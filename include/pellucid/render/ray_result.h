@@ -31,7 +31,7 @@ struct RuleCounts {
   }
 };
 
-/// What became of a ray.
+/// Outcome of a ray.
 enum class RayStatus : std::uint8_t {
   followed,
   // To another way of following rays; what was found means nothing:

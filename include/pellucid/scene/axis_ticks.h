@@ -6,7 +6,7 @@
 
 namespace pellucid {
 
-/// Where an axis has a number.
+/// Position of a number on an axis.
 struct Tick {
   double share = 0;  ///< of the way along the axis
   std::string label;

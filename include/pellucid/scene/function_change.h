@@ -29,7 +29,7 @@ std::array<double, 2> value_range(const RangeEnds& range, const Volume& volume);
 /// Returns the same for a mesh's first channel, with values weighted by the volume that they fill.
 std::array<double, 2> value_range(const RangeEnds& range, const MeshChannels& mesh);
 
-/// How a function is changed once its data are known.
+/// Changes of a function that are made once its data are known.
 struct FunctionChange {
   ColorMap colors;                 ///< in place of the function's; empty: they stay
   std::optional<RangeEnds> range;  ///< to where its first and last points move

@@ -9,7 +9,7 @@
 
 namespace pellucid {
 
-/// What |a − b| looks like over a set of numbers. Numbers of which one or both are not finite, and
+/// Statistics of |a − b| over a set of numbers. Numbers of which one or both are not finite, and
 /// that are not the same, are counted and left out of the rest.
 struct DifferenceStatistics {
   double largest = 0;
@@ -26,10 +26,10 @@ struct ImageDifference {
   int column = 0, row = 0;  ///< where the largest difference is; the first in reading order
 };
 
-/// Of premultiplied linear RGBA. Throws Error where the sizes differ.
+/// Compares images of premultiplied linear RGBA. Throws Error where the sizes differ.
 ImageDifference compare_images(const Image& a, const Image& b);
 
-/// How a difference stands to the errors that the images carry.
+/// Comparison of a difference with the errors that the images carry.
 struct ErrorCheck {
   std::size_t pixels = 0;
   std::size_t over = 0;     ///< differ by more than the errors allow, or are not finite

@@ -88,9 +88,9 @@ struct LabelContent {
 using LayerContent =
     std::variant<VolumeContent, ChannelsContent, MeshContent, LabelContent, SourceContent>;
 
-/// What one number a projected layer is along a ray: of the reconstructed field where the layer has
-/// data and its clips keep them. `mean` and `sum` are ∫ v ds by world length; mean divides it by
-/// the length of these parts.
+/// Number that a projected layer shows for a ray, from the reconstructed field where the layer has
+/// data that its clips keep. `mean` and `sum` are ∫ v ds by world length; mean divides it by the
+/// length of these parts.
 enum class LayerProjection { maximum, minimum, mean, sum };
 /// Returns the name of a projection as in scene files.
 std::string_view projection_name(LayerProjection projection) noexcept;
@@ -109,7 +109,7 @@ struct Layer {
   /// transparent. Such layers have no depth: they lie over the integral of all other layers, later
   /// ones of the list over earlier ones. For one variable without a mask.
   std::optional<LayerProjection> projection{};
-  /// How the layer and its surfaces reflect the scene's lights; none: they glow in their own
+  /// Reflection of the scene's lights by the layer and its surfaces; none: they glow in their own
   /// colors. Not for labels.
   std::optional<Shading> shading{};
   /// Multiplies the extinction of the layer's functions; may be null. Not for labels, nor beside

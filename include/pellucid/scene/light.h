@@ -40,7 +40,7 @@ struct Light {
 /// `where` begins the message, e.g. "light 1".
 void check_light(const Light& light, const std::string& where);
 
-/// How the gradient of data is reconstructed, in the scene's world.
+/// Reconstruction of the gradient of data, in the scene's world.
 ///
 /// - `smooth`: at the data values the derivative of the parabola through a value and its two
 ///   neighbors along each axis of the grid (on a uniform axis the central difference); one-sided at
@@ -52,7 +52,7 @@ enum class GradientKind { smooth, field };
 /// Returns the name of a kind as in scene files.
 std::string_view gradient_kind_name(GradientKind kind) noexcept;
 
-/// How a layer or its surfaces reflect light (Blinn 1977), on both sides.
+/// Reflection of light by a layer or its surfaces (Blinn 1977), on both sides.
 ///
 ///   shaded color = color ∘ (ambient + Σ diffuse |n·l| L) + Σ specular |n·h|^power L
 ///

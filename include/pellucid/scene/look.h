@@ -20,11 +20,11 @@ struct LookName {
   std::string_view description;  ///< one line, shown to the user
 };
 
-/// How a volume or a mesh is shown if nobody says how.
+/// Default look of a volume or a mesh.
 struct Look {
   std::string name;    ///< of looks() or looks_of_meshes()
   std::string reason;  ///< what it was chosen for, of the data; empty where it was asked for
-  /// Whether the values are labels: of them default_label_table() makes colors, and nothing else
+  /// True if the values are labels: of them default_label_table() makes colors, and nothing else
   /// here counts.
   bool as_labels = false;
   TransferFunction transfer_function{{{0, 0, {}}}};

@@ -16,7 +16,7 @@ namespace pellucid {
 struct Preset {
   std::string_view name;         ///< such as "ct-bone"
   std::string_view description;  ///< one line, shown to the user
-  /// Whether values are Hounsfield units and lengths millimetres. Otherwise the preset is relative
+  /// True if values are Hounsfield units and lengths millimetres. Otherwise the preset is relative
   /// to the data's range and the mean chord of the data's box.
   bool hounsfield;
   bool lit;  ///< whether it is made for data in light: the program adds a default Shading

@@ -20,7 +20,7 @@ namespace pellucid {
 
 enum class Projection { perspective, orthographic };
 
-/// Where the picture is taken from, in world space.
+/// Camera of a picture, in world space.
 struct Camera {
   Projection projection = Projection::perspective;
   Vec3<double> position{0, 0, 1};
@@ -39,8 +39,8 @@ struct ImageSize {
 /// is not in [1, 65536].
 CameraFrame<double> make_camera_frame(const Camera& camera, ImageSize size);
 
-/// How rays are integrated. `exact` computes the integral of the reconstructed data. The other
-/// methods are there for comparison; docs/explanation/theory.md names their sources.
+/// Method by which rays are integrated. `exact` computes the integral of the reconstructed data.
+/// The other methods are there for comparison; docs/explanation/theory.md names their sources.
 ///
 /// - Through a grid all of them but homogeneous, average and partial march at a fixed step;
 ///   preintegrated needs a single volume, kniss and gaussian need channels.
@@ -83,12 +83,12 @@ inline constexpr double largest_tolerance = 1;
 /// Half of a step of 8 bits.
 inline constexpr double default_tolerance = 1.0 / 512;
 
-/// How a scene is integrated, and how accurately.
+/// Method and accuracy of the integration of a scene.
 struct Integration {
   Method method = Method::exact;
   Precision precision = Precision::automatic;
-  /// Of the sampling methods, in voxels of the finest layer that is there: Volume::voxel_size(), of
-  /// a mesh voxel_of() (scene/layer.h).
+  /// Step of the sampling methods, in voxels of the finest layer that is there:
+  /// Volume::voxel_size(), of a mesh voxel_of() (scene/layer.h).
   double step = 0.5;
   /// Largest error of a pixel of the exact method, in each channel of premultiplied linear RGBA.
   /// render() throws Error if it is outside of the limits above.
@@ -101,9 +101,9 @@ struct Integration {
   double set_tolerance(double wanted);
 };
 
-/// What is seen, by which camera, and how accurately. Where layers overlap, their extinctions add,
-/// and so do extinction · color: a mixture of particles (Max 1995). The order of the layers does
-/// not matter, except among projected ones (Layer::projection).
+/// Picture to render: data, camera and accuracy. Where layers overlap, their extinctions add, and
+/// so do extinction · color: a mixture of particles (Max 1995). The order of the layers does not
+/// matter, except among projected ones (Layer::projection).
 struct Scene {
   std::vector<Layer> layers;
   std::vector<Clip> clips;             ///< of all layers; what all of them keep is shown

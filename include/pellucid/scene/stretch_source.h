@@ -53,7 +53,7 @@ class BasicStretchStream {
 /// leaves alone stays as it was.
 using StretchStream = BasicStretchStream<FieldStretch>;
 
-/// What stretches must have beside their data.
+/// Quantities that stretches must have beside their data.
 struct StretchDemand {
   int gradient = -1;   ///< the variable whose gradient is needed, for light; -1: none
   int magnitude = -1;  ///< the variable whose gradient's length is needed, for gradient opacity

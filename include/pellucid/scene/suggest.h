@@ -25,7 +25,7 @@ namespace pellucid {
 /// The result does not depend on the number of threads. Both throw Error if a channel does not
 /// exist, or no data point has a number in each of the channels.
 
-/// How much work a suggestion may be, and who is told of it.
+/// Limit on the work of a suggestion, and the receiver of its progress.
 struct SuggestControl {
   /// Looks at 65 536 data points and a sixteenth of the lines, and fits three components at most
   /// where their number is open: five to ten times as fast, for a picture that is replaced soon.

@@ -10,8 +10,8 @@
 
 namespace pellucid {
 
-/// Where the reconstructed data of a layer have a value. Rays are cut there, and the surface is put
-/// over what is behind it. Lit as the layer's shading says.
+/// Surface on which the reconstructed data of a layer have one value. Rays are cut there, and the
+/// surface is put over what is behind it. Lit as the layer's shading says.
 struct Isosurface {
   double value = 0;
   double opacity = 1;  ///< in [0, 1]

@@ -10,7 +10,7 @@ namespace pellucid {
 class Volume;
 struct Layer;
 
-/// What differs between neighboring data values, in data units; gradients per voxel.
+/// Typical differences between neighboring data values, in data units; gradients per voxel.
 struct TypicalNoise {
   double deviation = 0;        ///< standard deviation of the noise, rounding included
   double gradient = 0;         ///< magnitude that 2 % exceed

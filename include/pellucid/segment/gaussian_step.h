@@ -8,8 +8,8 @@
 
 namespace pellucid {
 
-/// How the depth of a Gaussian along linear data is computed: as in the paper (gaussian_kniss.h),
-/// or accurately (gaussian.h).
+/// Computation of the depth of a Gaussian along linear data: as in the paper (gaussian_kniss.h), or
+/// accurately (gaussian.h).
 enum class GaussianRule { kniss, closed_form };
 
 /// Returns the mean density of a primitive along data linear from v1 (front) to v2, by a rule.

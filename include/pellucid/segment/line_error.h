@@ -66,8 +66,8 @@ template <class T>
 struct LineError {
   T extinction;  ///< of the mean extinction
   T color;       ///< of the mean color weighted by extinction, times the mean extinction
-  /// Of the integral over a part of the window that begins at either end: of the extinction, and of
-  /// extinction · (color - c) for any absorbing color c.
+  /// Errors of the integral over a part of the window that begins at either end: of the extinction,
+  /// and of extinction · (color - c) for any absorbing color c.
   T part_extinction, part_emission;
   /// Relative difference between the lengths that a value has in the line and in the data; half of
   /// the range of their ratio; and the contribution of the ends to the mean extinction. Infinite if

@@ -271,7 +271,7 @@ class LitPanel {
     gaussians.lower *= first == last && !(slopes.extinction_slope > T(0)) ? largest : T(0);
   }
 
-  /// What the bounds on Gaussians leave open of the depth.
+  /// Returns the uncertainty of the depth that the bounds on Gaussians leave.
   PELLUCID_HD T gaussian_depth_error() const noexcept {
     return min(gaussians_.upper - gaussians_.lower, T(1));
   }

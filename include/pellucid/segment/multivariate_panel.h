@@ -19,7 +19,7 @@ struct PanelDemand {
   scalar_t<T> largest_color = 1;             ///< C_max >= 1: a bound on every color on the ray
   T position_error{};                        ///< error of the positions of its ends, world units
   mask_t<T> last_resort = mask_t<T>(false);  ///< accept the result whatever its error
-  /// Of light with the grade `proved`: accept the result if its estimated error is allowed. It
+  /// For light with the grade `proved`: accept the result if its estimated error is allowed. It
   /// still reports what is proved.
   bool estimate_suffices = false;
 };
@@ -78,7 +78,7 @@ template <class T, class Data, int Capacity, class Set, class Allowance>
 class PanelIntegrator {
   using S = scalar_t<T>;
   using Span = MultivariateSpan<T, Data, Capacity>;
-  /// Whether lines replace data that are not linear.
+  /// True if lines replace data that are not linear.
   static constexpr bool bent = std::is_same_v<Data, CubicBernstein<T>>;
 
  public:

@@ -10,9 +10,9 @@
 
 namespace pellucid {
 
-/// What a sampling renderer makes of a segment of a ray, for comparison with the integral: rules
-/// that see materials at points, and rules that see data at the ends, between which they take them
-/// as linear. docs/explanation/theory.md names the sources.
+/// Rule of a sampling renderer for a segment of a ray, for comparison with the integral: rules that
+/// see materials at points, and rules that see data at the ends, between which they take them as
+/// linear. docs/explanation/theory.md names the sources.
 enum class SegmentRule {
   rectangle,      ///< the material at the front
   taylor,         ///< the same with the exponential to first order

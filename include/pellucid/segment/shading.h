@@ -18,7 +18,7 @@ struct LightSource {
   Rgb<T> color{T(1), T(1), T(1)};
 };
 
-/// How a surface reflects light (Shading in scene/light.h).
+/// Reflection of light by a surface (Shading in scene/light.h).
 template <class T>
 struct Reflection {
   T ambient{}, diffuse{}, specular{}, power = T(1);
@@ -32,7 +32,7 @@ PELLUCID_HD constexpr bool has_kink_in_highlight(const Reflection<T>& reflection
   return reflection.specular > T(0) && reflection.power < T(4) && reflection.power != T(2);
 }
 
-/// What light makes of a color: color ∘ factor + added.
+/// Color in light: color ∘ factor + added.
 template <class T>
 struct Lit {
   Rgb<T> factor{}, added{};
@@ -314,7 +314,7 @@ PELLUCID_HD T place_doubt(const Reflection<scalar_t<T>>& reflection,
   return sum;
 }
 
-/// What light makes of colors anywhere on a stretch.
+/// Bounds on colors in light anywhere on a stretch.
 template <class T>
 struct LitBounds {
   Lit<T> lower, upper;

@@ -272,7 +272,7 @@ inline constexpr int lanes<Batch<T, N>> = N;
 template <class T, int N>
 inline constexpr bool fuses<Batch<T, N>> = detail::Native<N>::has_fma;
 
-/// As static_cast does it lane by lane: to int towards zero, from double to float to the nearest.
+/// Converts each lane like static_cast: to int towards zero, from double to float to the nearest.
 /// What does not fit into an int gives the smallest one.
 template <class To, class From, int N>
 PELLUCID_ALWAYS_INLINE Batch<To, N> convert(Batch<From, N> x) noexcept {

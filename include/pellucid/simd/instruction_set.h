@@ -9,7 +9,7 @@
 /// which of them may run on this machine.
 namespace pellucid {
 
-/// Those of x86-64, the fastest last, and that of AArch64.
+/// Instruction sets of x86-64, the fastest last, and that of AArch64.
 enum class InstructionSet { scalar, sse4, avx2, avx512, neon64 };
 
 /// The sets of this kind of processor, the fastest last: PELLUCID_EACH_SET(f) is f(sse4) f(avx2)
@@ -40,7 +40,7 @@ constexpr Function* entry_of(InstructionSet set, Function* first, Functions*... 
   return nullptr;
 }
 
-/// Of one register of floats.
+/// Returns the number of lanes of one register of floats.
 constexpr int lanes_of(InstructionSet set) noexcept {
   return set == InstructionSet::avx512   ? 16
          : set == InstructionSet::avx2   ? 8
@@ -56,8 +56,8 @@ constexpr const char* name_of(InstructionSet set) noexcept {
                                          : "scalar";
 }
 
-/// Whether the processor has every instruction that the set's sources are compiled for, and the
-/// system keeps its registers.
+/// Returns whether the processor has every instruction that the set's sources are compiled for, and
+/// the system keeps its registers.
 inline bool is_supported(InstructionSet set) noexcept {
 #if defined(__x86_64__) && defined(__GNUC__)
   switch (set) {

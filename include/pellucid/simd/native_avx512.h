@@ -175,15 +175,15 @@ struct Native<16> : LibraryOperations {
     second = _mm512_shuffle_ps(a, b, 0xdd);
   }
   static constexpr bool has_pairs_in_rows = true;
-  /// Whether gathers of 64 bits take less than loads of 64 bits one by one: half as long on Intel's
-  /// processors since Sapphire Rapids. Those before it may guard gathers against other programs
-  /// that read along (Downfall), and AMD's take them apart.
+  /// Returns whether gathers of 64 bits take less than loads of 64 bits one by one: half as long on
+  /// Intel's processors since Sapphire Rapids. Those before it may guard gathers against other
+  /// programs that read along (Downfall), and AMD's take them apart.
   PELLUCID_ALWAYS_INLINE static bool gathers_are_fast() noexcept {
     return __builtin_cpu_is("intel") && __builtin_cpu_supports("avx512bf16") &&
            __builtin_cpu_supports("avx512vbmi2");
   }
-  /// Of each lane the pairs at base + offset + row[k], by gathers: first and second values of row
-  /// k, both of 4 bytes, become out[2 k] and out[2 k + 1].
+  /// Gathers the pairs of each lane at base + offset + row[k]: first and second values of row k,
+  /// both of 4 bytes, become out[2 k] and out[2 k + 1].
   template <class Value, std::size_t Rows>
   PELLUCID_ALWAYS_INLINE static void pairs_in_rows(const Value* const* base,
                                                    const std::int32_t* offset,

@@ -53,8 +53,8 @@ template <int N>
 struct Native;
 
 #if PELLUCID_HAS_SSE4
-/// What the SIMD library has right on x86-64. A NaN among the arguments of lesser() and greater()
-/// gives y.
+/// Operations that the SIMD library has right on x86-64. A NaN among the arguments of lesser() and
+/// greater() gives y.
 struct LibraryOperations {
   template <class Register>
   PELLUCID_ALWAYS_INLINE static Register lesser(Register x, Register y) noexcept {

@@ -228,7 +228,7 @@ struct Native<4> : LibraryOperations {
     high = _mm_setr_pd(base[i[2]], base[i[3]]);
   }
 
-  /// Whether there is a lookup() of 16 numbers in registers, index 0 … 15.
+  /// True if there is a lookup() of 16 numbers in registers, index 0 … 15.
   template <class T>
   static constexpr bool has_lookup = false;
 
@@ -243,7 +243,7 @@ struct Native<4> : LibraryOperations {
     first = _mm_shuffle_ps(a, b, 0x88);
     second = _mm_shuffle_ps(a, b, 0xdd);
   }
-  /// Whether there is pairs_in_rows().
+  /// True if there is pairs_in_rows().
   static constexpr bool has_pairs_in_rows = false;
   /// Pairs of values of 2 bytes: one word per lane, the first value in its lower half.
   template <class Value, class Offset>
@@ -295,7 +295,7 @@ struct Native<4> : LibraryOperations {
     }
   }
 
-  /// Whether there are store_packed() and load_spread().
+  /// True if there are store_packed() and load_spread().
   static constexpr bool has_packing = false;
 };
 

@@ -43,7 +43,7 @@ struct InFloat {
   using type = float;
 };
 
-/// What a comparison of two T gives.
+/// Type of the comparison of two T.
 template <class T>
 using mask_t = typename MaskOf<T>::type;
 
@@ -54,7 +54,7 @@ using index_t = typename IndexOf<T>::type;
 template <class T>
 using in_float_t = typename InFloat<T>::type;
 
-/// How many numbers a T holds.
+/// Number of lanes of a T.
 template <class T>
 inline constexpr int lanes = 1;
 
@@ -84,7 +84,7 @@ PELLUCID_HD constexpr void assign(bool mask, T& target, T value) noexcept {
   if (mask) target = value;
 }
 
-/// As static_cast: to int towards zero, from double to float to the nearest.
+/// Converts like static_cast: to int towards zero, from double to float to the nearest.
 template <class To, class From>
 requires std::is_arithmetic_v<From> PELLUCID_HD constexpr To convert(From x) noexcept {
   return static_cast<To>(x);
@@ -99,7 +99,7 @@ template <class T, std::size_t Entries>
 PELLUCID_HD constexpr T lookup(const T (&table)[Entries], int index) noexcept {
   return table[index];
 }
-/// Whether lookup() of 16 numbers takes less than a load for each lane.
+/// True if lookup() of 16 numbers takes less than a load for each lane.
 template <class T>
 inline constexpr bool looks_up_in_registers = false;
 
@@ -151,7 +151,7 @@ PELLUCID_HD constexpr double multiply_add(double a, double b, double c) noexcept
   return a * b + c;
 }
 
-/// Whether multiply_add(a, b, c) is fused: one rounding.
+/// True if multiply_add(a, b, c) is fused: one rounding.
 template <class T>
 inline constexpr bool fuses = false;
 

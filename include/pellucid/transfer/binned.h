@@ -47,7 +47,7 @@ struct BinnedTransfer {
   std::int32_t bins = 0;
   float color_slope_change_rounding = 0;  ///< of a difference of two such sums
   bool bends = false;                     ///< whether any of them is not 0
-  /// Whether `marks` says more than support_min and support_max: there are jumps or gaps.
+  /// True if `marks` says more than support_min and support_max: there are jumps or gaps.
   bool has_marks = false;
   float support_min = 0, support_max = 0;  ///< nothing absorbs outside; min > max: nothing absorbs
   /// Ranges of absorbing values, lower and upper ends in ascending order, if there are no jumps and

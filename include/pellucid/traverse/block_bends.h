@@ -5,8 +5,8 @@
 
 namespace pellucid {
 
-/// How much the data of one block can bend: bounds, rounded upward, on how fast its derivative
-/// changes. Infinite where the block has vacuum.
+/// Bounds, rounded upward, on how fast the derivative of the data of one block changes. Infinite
+/// where the block has vacuum.
 struct BlockBends {
   /// Along each axis, the largest jump of the derivative by that axis's grid coordinate across a
   /// plane of cells: those inside of the block and its upper face (the lower is its neighbour's).
@@ -49,7 +49,8 @@ PELLUCID_HD inline double derivative_variation(const BlockBends& bends, Vec3<dou
   return derivative_variation(bend, twist, speed, planes, length);
 }
 
-/// How far data whose derivative varies by `variation` in all can leave the chord of a stretch:
+/// Returns a bound on the distance from the chord of a stretch of data whose derivative varies by
+/// `variation` in all:
 ///
 ///   |f(t) - chord(t)| <= length · (B - m)(m - A) / (B - A) <= length · (B - A) / 4,
 ///

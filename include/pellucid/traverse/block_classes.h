@@ -7,7 +7,7 @@
 
 namespace pellucid {
 
-/// What has to be done in a block, under one transfer function.
+/// Treatment of a block under one transfer function.
 enum class BlockKind : std::uint8_t {
   cells,     ///< gone through
   constant,  ///< the transfer function is constant over the range of the data, and no cell is
@@ -29,9 +29,9 @@ struct alignas(4) BlockClass {
   /// there is a jump, and where some cells are vacuum; 0 where the block is skipped or constant.
   std::uint16_t roughness;
   BlockKind kind;
-  /// Of a block to skip: the largest k <= 7 such that all blocks are to be skipped in the cube of
-  /// (2^k)³ blocks, aligned at multiples of its side, which holds this one. What of the cube is
-  /// outside of the grid counts as to be skipped. Of a smooth block likewise. 0 elsewhere.
+  /// Level of a block to skip: the largest k <= 7 such that all blocks are to be skipped in the
+  /// cube of (2^k)³ blocks, aligned at multiples of its side, which holds this one. What of the
+  /// cube is outside of the grid counts as to be skipped. Of a smooth block likewise. 0 elsewhere.
   std::uint8_t level;
 
   PELLUCID_HD constexpr bool absorbs_in_cells() const noexcept {
@@ -40,22 +40,22 @@ struct alignas(4) BlockClass {
 };
 static_assert(sizeof(BlockClass) == 4);
 
-/// What all smooth blocks of a grid have in common: bounds on how much their data bend, and on what
-/// that does. Between two samples of such a block lies no feature that neither shows, but for what
-/// one bend can be: over four blocks each way, and over the range of each, neither the data nor the
-/// transfer function bend much more in one place than they do all over.
+/// Bounds that all smooth blocks of a grid share: on the second differences of their data, and on
+/// the effect of these. Between two samples of such a block lies no feature that neither shows, but
+/// for what one bend can be: over four blocks each way, and over the range of each, neither the
+/// data nor the transfer function bend much more in one place than they do all over.
 struct SmoothBlocks {
   float bend[3] = {};  ///< as in BlockBends
   /// largest color · slope + color slope (see BlockClass), the largest of the blocks.
   double roughness = 0;
   /// Cells; the longest of any block. 0: none is smooth.
   double longest_step = 0;
-  /// Of each block, smooth or not, `fields` numbers: roughness times bend along x, y and z; and 1 /
-  /// the longest step, in cells: waves of the data are longer than three times that. The largest of
-  /// all smooth blocks among it and those that touch it.
+  /// Records of each block, smooth or not, of `fields` numbers: roughness times bend along x, y and
+  /// z; and 1 / the longest step, in cells: waves of the data are longer than three times that. The
+  /// largest of all smooth blocks among it and those that touch it.
   const float* local = nullptr;
   static constexpr int fields = 4;
-  /// How many lengths steps may have: longest_step times sampled_step_share() of each.
+  /// Number of lengths that steps may have: longest_step times sampled_step_share() of each.
   int levels = 0;
 };
 /// Cells; half the width of a block.
@@ -76,7 +76,7 @@ struct BlockClasses {
   PELLUCID_HD const BlockClass& operator[](int index) const noexcept { return block[index]; }
 };
 
-/// What a ray needs to know of the blocks. Views; own nothing.
+/// Records and classes of all blocks, for rays. Views; own nothing.
 struct ClassifiedBlocks {
   BlockRecords records;
   BlockClasses classes;

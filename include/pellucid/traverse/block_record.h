@@ -10,12 +10,12 @@ namespace pellucid {
 /// Cells along an axis of a block; the last block of an axis may have fewer.
 inline constexpr int block_width = 8;
 
-/// How many of a block's cells have a NaN corner and so are empty.
+/// Share of a block's cells that are vacuum because a corner is NaN.
 enum class BlockVacuum : std::uint8_t { none, some, all };
 
-/// What is kept of a block of cells: bounds on its data and on how much these bend, in 24 bytes
-/// (4.7 % of 8³ values of one byte). Twelve numbers of 16 bits in this order, so that two loads of
-/// 8 and 16 bytes, or three of 8, take it in:
+/// Record of a block of cells: bounds on its data and on their second differences, in 24 bytes (4.7
+/// % of 8³ values of one byte). Twelve numbers of 16 bits in this order, so that two loads of 8 and
+/// 16 bytes, or three of 8, take it in:
 ///
 ///   bytes  0 …  3  lower, upper  the range of the data, as codes (BlockCode)
 ///   bytes  4 …  9  bend          along x, y, z
@@ -36,12 +36,12 @@ struct alignas(8) BlockRecord {
   PELLUCID_HD constexpr BlockVacuum vacuum() const noexcept {
     return static_cast<BlockVacuum>(flags & vacuum_bits);
   }
-  /// Whether the data is one number all over the block, and no cell is vacuum.
+  /// Returns whether the data is one number all over the block, and no cell is vacuum.
   PELLUCID_HD constexpr bool constant() const noexcept { return (flags & constant_bit) != 0; }
 };
 static_assert(sizeof(BlockRecord) == 24 && alignof(BlockRecord) == 8);
 
-/// What the codes of ranges mean: code c is the number minimum + c · step, as computed here. Both
+/// Meaning of the codes of ranges: code c is the number minimum + c · step, as computed here. Both
 /// operations round, so that the order of codes is that of their numbers; minimum is code 0, and
 /// code `last` is not below the volume's maximum. For integers whose range has at most 65535 steps
 /// of 1, step is 1 and the code of a datum is exact.

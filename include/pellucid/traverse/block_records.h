@@ -7,8 +7,9 @@
 
 namespace pellucid {
 
-/// What the trilinear data of one block can be, over its cells that are not vacuum; zeros where all
-/// are. Everything is rounded outward: these are bounds of the exact reconstruction, proved.
+/// Ranges of the trilinear data of one block and of their derivatives, over its cells that are not
+/// vacuum; zeros where all are. Everything is rounded outward: these are bounds of the exact
+/// reconstruction, proved.
 ///
 /// The trilinear data of a cell is a convex combination of its corners, and its derivative along an
 /// axis one of the four differences of corners along that axis by the cell's width: so the range of
@@ -21,9 +22,9 @@ struct BlockRange {
   bool constant;  ///< one number all over the block, no cell of it vacuum
 };
 
-/// How much the data's derivative by t can differ between two places of the block along a ray of
-/// this direction (in grid coordinates). An axis along which the ray does not move does not count,
-/// even if unbounded.
+/// Returns a bound on how much the data's derivative by t can differ between two places of the
+/// block along a ray of this direction (in grid coordinates). An axis along which the ray does not
+/// move does not count, even if unbounded.
 PELLUCID_HD inline double derivative_oscillation(const BlockRange& range,
                                                  Vec3<double> direction) noexcept {
   double sum = 0;
@@ -42,8 +43,8 @@ struct BlockRecords {
   const BlockRecord* record = nullptr;  ///< x fastest
   BlockCode code;
   GridAxis<double> axis[3];  ///< the blocks as if they were cells
-  /// Of the grid's cells: the least distance of two planes that have cells on both sides (that of
-  /// all planes where there are no two), and the mean.
+  /// Widths of the grid's cells: the least distance of two planes that have cells on both sides
+  /// (that of all planes where there are no two), and the mean.
   Vec3<double> least_width{1, 1, 1}, mean_width{1, 1, 1};
 
   PELLUCID_HD int count() const noexcept {

@@ -5,10 +5,10 @@
 
 namespace pellucid {
 
-/// How much the data of a block and of all that touch it vary: the largest of their records'
-/// (traverse/block_record.h). Upper halves of floats, as there; all infinite beside vacuum,
-/// through which data are not continuous. In loads of 32 bits: oscillation x and y; oscillation z
-/// and bend x; bend y and z; twist.
+/// Bounds on the variation of the data of a block and of all that touch it: the largest of their
+/// records' (traverse/block_record.h). Upper halves of floats, as there; all infinite beside
+/// vacuum, through which data are not continuous. In loads of 32 bits: oscillation x and y;
+/// oscillation z and bend x; bend y and z; twist.
 ///
 /// What they say of a straight way that begins in the block and goes no further than a block's
 /// width along each axis: it is in m + 1 blocks at most, m the number of axes on which it ends in

@@ -109,7 +109,8 @@ class BlockWalk {
     return lo;
   }
 
-  /// Where the ray leaves the aligned cube of (2^level)³ blocks in which it stands, or ends.
+  /// Returns the parameter at which the ray leaves the aligned cube of (2^level)³ blocks in which
+  /// it stands, or ends.
   PELLUCID_HD double cube_end(int level) const noexcept {
     double t = end_;
     for (int a = 0; a < 3; ++a) {

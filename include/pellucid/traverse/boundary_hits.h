@@ -5,7 +5,7 @@
 
 namespace pellucid {
 
-/// Where a line goes through the boundary of a mesh.
+/// Crossing of a line and the boundary of a mesh.
 struct MeshHit {
   double t = 0;
   std::int32_t code = Tetrahedron::outside;  ///< 4 · tetrahedron + face
@@ -15,7 +15,7 @@ struct MeshHit {
   }
 };
 
-/// Where the ray goes through a face, by the weights of its points.
+/// Returns the parameter at which the ray crosses a face, by the weights of its points.
 PELLUCID_HD inline double parameter_of(const SeenFace<double>& face) noexcept {
   double weight[3];
   face.weights(weight);
@@ -29,8 +29,8 @@ class LineInBoxes {
   PELLUCID_HD explicit LineInBoxes(const Ray<double>& ray) noexcept : ray_(ray) {
     for (int a = 0; a < 3; ++a) inverse_[a] = 1 / ray.direction[a];
   }
-  /// Whether the line, in both directions, may meet the box. Boxes are larger than what is in them
-  /// by more than this rounds.
+  /// Returns whether the line, in both directions, may meet the box. Boxes are larger than what is
+  /// in them by more than this rounds.
   PELLUCID_HD bool meets(const BoundaryNode& box) const noexcept {
     double begin = -std::numeric_limits<double>::infinity(), end = -begin;
     for (int a = 0; a < 3; ++a) {

@@ -8,7 +8,7 @@
 
 namespace pellucid {
 
-/// As many neighbours of a row as a register of 16 bytes holds, which every machine has that this
+/// Neighbours of a row, as many as a register of 16 bytes holds, which every machine has that this
 /// is compiled for: what the compiler makes of loops over so few is not to be relied upon. NaNs
 /// compare as in min() and max() of scalar.h.
 template <class Number>

@@ -65,7 +65,7 @@ class BlockRecorder {
   using Number = block_number<Value>;
   using Lanes = RowLanes<Number>;
   static constexpr int side = block_width + 2;
-  /// Of a row in the copy: whole vectors of 16 bytes.
+  /// Length of a row in the copy: whole vectors of 16 bytes.
   static constexpr int row = sizeof(Number) == 2 ? 16 : sizeof(Number) == 4 ? 12 : side;
   /// From one corner to the next along an axis.
   PELLUCID_HD static constexpr int stride(int a) noexcept {
@@ -86,7 +86,7 @@ class BlockRecorder {
     return e.empty() ? 0 : max(static_cast<double>(e.upper), -static_cast<double>(e.lower));
   }
 
-  /// What a record says, as numbers.
+  /// Contents of a record, as numbers.
   struct Found {
     double lower = 0, upper = 0;
     double oscillation[3] = {0, 0, 0}, bend[3] = {0, 0, 0}, twist[3] = {0, 0, 0};
@@ -262,7 +262,7 @@ class BlockRecorder {
     }
   }
 
-  /// Of the cells without a NaN corner. What is not known to be anything is infinite.
+  /// Returns the record of the cells without a NaN corner. Bounds that are not known are infinite.
   PELLUCID_HD BlockRecord record_beside_vacuum() const noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     Extent values;

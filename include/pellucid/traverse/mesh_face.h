@@ -6,10 +6,10 @@
 
 namespace pellucid {
 
-/// What a number is off by at most that is interpolated between three seen points, as a share of
-/// their numbers' range, or 1: where places across the ray are off by `position_error`, and they
-/// and the numbers are rounded to T. `inverse`: of the three areas' sum; `size`: of their products,
-/// all in all; `across`: the sum of |x| + |y|.
+/// Returns a bound on the error of a number that is interpolated between three seen points, as a
+/// share of their numbers' range, or 1: where places across the ray are off by `position_error`,
+/// and they and the numbers are rounded to T. `inverse`: of the three areas' sum; `size`: of their
+/// products, all in all; `across`: the sum of |x| + |y|.
 ///
 /// Areas that are off by e_i move a value v by Σ e_i (v_i - v) / Σ area_i; products are off by 3 u
 /// of their size, what blur does aside, and areas are rounded: r = Σ |e_i| / Σ area_i. The true
@@ -47,7 +47,7 @@ struct SeenFace {
                                          T(1) / select(flat, T(1), sum)));
   }
 
-  /// What the points contribute where the ray goes through, in [0, 1], in all 1 to 3 u.
+  /// Computes the weights of the points where the ray crosses the face, in [0, 1], in all 1 to 3 u.
   PELLUCID_HD void weights(T* weight) const noexcept {
     const T sum = area[0] + area[1] + area[2];
     // Areas so small that they vanish: the face is no larger than rounding.

@@ -6,7 +6,7 @@
 
 namespace pellucid {
 
-/// What a ray knows where it goes through a face.
+/// Crossing of a ray and a face.
 struct MeshPlace {
   double t = 0;
   double t_error = 0;  ///< how far t may be off
@@ -19,8 +19,8 @@ struct MeshSpan {
   double begin = 0, end = 0;  ///< world arc length
   double front[max_channels], back[max_channels];
   double value_error[max_channels];
-  /// How far begin and end may be off, together, where the data go on behind them as they are at
-  /// the ends: what one span has too much, its neighbour has too little.
+  /// Errors of begin and end, together, where the data go on behind them as they are at the ends:
+  /// what one span has too much, its neighbour has too little.
   double position_error = 0;
   double end_error = 0;  ///< and where they do not
   std::int32_t tetrahedron = 0;
@@ -95,8 +95,8 @@ PELLUCID_HD inline void improve(const Tetrahedra& mesh, const MeshFields& fields
   place.t_error = blur;
 }
 
-/// What lies between two places on the faces of a tetrahedron; `front`: how far along the ray one
-/// is already.
+/// Returns the span between two positions on the faces of a tetrahedron; `front`: how far along the
+/// ray one is already.
 PELLUCID_HD inline MeshSpan span_between(const MeshPlace& from, const MeshPlace& to,
                                          const MeshFields& fields, std::int32_t tetrahedron,
                                          double front) noexcept {
@@ -123,7 +123,7 @@ PELLUCID_HD inline MeshSpan span_between(const MeshPlace& from, const MeshPlace&
   return span;
 }
 
-/// Whether a place is behind the boundary at a hit, by more than rounding.
+/// Returns whether a place is behind the boundary at a hit, by more than rounding.
 PELLUCID_HD inline bool is_beyond(const Tetrahedra& mesh, const MeshFields& fields,
                                   const RayFrame<double>& view, const MeshHit& hit,
                                   const MeshPlace& place) noexcept {

@@ -6,7 +6,7 @@
 
 namespace pellucid {
 
-/// What a multivariate transfer function does in each block of cells. Views; own nothing. Built by
+/// Effect of a multivariate transfer function in each block of cells. Views; own nothing. Built by
 /// scene/multivariate_blocks_storage.h.
 struct MultivariateBlocks {
   BlockRecords records;                      ///< of the first channel: only their places are used
@@ -17,12 +17,12 @@ struct MultivariateBlocks {
   double left_out = 0;
 };
 
-/// What smooth blocks have in common, through whose channels rays beside each other see nothing
-/// that comes and goes between them. A view; owns nothing.
+/// Bounds that smooth blocks share. Rays beside each other miss no feature of their channels
+/// between them. A view; owns nothing.
 struct SmoothChannels {
-  /// Of each block, smooth or not, the largest of 1 / the longest step of the smooth ones among it
-  /// and those that touch it: how far rays may be apart, in cells. Waves of the data are longer
-  /// than three times that, and no primitive's K (v - c) moves far in it.
+  /// Distance of rays by block, smooth or not: the largest of 1 / the longest step of the smooth
+  /// ones among it and those that touch it: how far rays may be apart, in cells. Waves of the data
+  /// are longer than three times that, and no primitive's K (v - c) moves far in it.
   const float* waves = nullptr;
   double longest_step = 0;  ///< of any block, cells; 0: none is smooth
 };

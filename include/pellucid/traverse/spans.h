@@ -6,8 +6,8 @@
 
 namespace pellucid {
 
-/// What a ray sees of a field inside one cell: the data as a polynomial of u in [0, 1], exactly,
-/// and where the stretch lies on the ray.
+/// Field along a ray inside one cell: the data as a polynomial of u in [0, 1], exactly, and where
+/// the stretch lies on the ray.
 template <class T>
 struct CubicSpan {
   CubicBernstein<T> data;

@@ -66,11 +66,11 @@ class StructuredWalk {
     }
   }
 
-  /// Whether any cell is left: before the first step, whether the ray meets the grid in more than a
-  /// point.
+  /// Returns whether any cell is left: before the first step, whether the ray meets the grid in
+  /// more than a point.
   PELLUCID_HD bool hits() const noexcept { return t_ < end_; }
 
-  /// What is left of the ray, exactly what the steps to come will cover.
+  /// Returns the remainder of the ray, which the remaining steps cover exactly.
   PELLUCID_HD Interval<T> remaining() const noexcept { return {t_, end_}; }
 
   /// The next cell; false behind the last one.

@@ -18,7 +18,7 @@ namespace pellucid {
 
 struct LayerSetting;
 
-/// What a device needs of a layer, in the host's memory.
+/// Data of a layer for a device, in the host's memory.
 class DeviceLayer {
  public:
   /// The layer is in its place, cannot_follow() has nothing to say of it, and it must outlive the

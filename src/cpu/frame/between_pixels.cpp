@@ -19,36 +19,39 @@ constexpr int largest_stride = 16;
 constexpr int least_cells = 8;
 /// At smaller tolerances few pixels pass, and those that they are taken from cost more.
 constexpr double least_tolerance = 4e-4;
-/// What is tried of a level: every so-manieth pixel each way. Less than that share of them, and
+/// Pixels of a level that are tried: every third each way. If less than a quarter of them is found,
 /// tracing the others to smaller tolerances costs more than it saves.
 constexpr int apart_of_tried = 3;
 constexpr double least_found = 0.25;
-/// Where less of the screen is clear, tracing to smaller tolerances costs more than it saves.
+/// Least share of the screen that is clear: with less, tracing to smaller tolerances costs more
+/// than it saves.
 constexpr double least_clear_share = 1.0 / 16;
 
 /// The cubic through four pixels, in the middle between the second and the third.
 constexpr std::array<float, 4> weight{-1.0f / 16, 9.0f / 16, 9.0f / 16, -1.0f / 16};
 constexpr float sum_of_weights = 1.25f;
-/// Of the largest of its pixels, what rounding in float does to it: sixteen products and their sum.
+/// Error of the cubic by rounding in float, as a share of its largest pixel: sixteen products and
+/// their sum.
 constexpr double rounding_of_cubic = 32 * 0x1p-24;
 
-/// Of the tolerance, what pixels of a level may be off by, for others are taken from them.
+/// Fractions of the tolerance that pixels of a level may use, because others are interpolated from
+/// them.
 struct Shares {
   double of_rays, in_between;
 };
 constexpr Shares shares_of(int stride) noexcept {
   return stride == 1 ? Shares{1, 1} : stride == 2 ? Shares{0.55, 0.85} : Shares{0.3, 0.5};
 }
-/// What a pixel inherits leaves something for itself.
+/// The error that a pixel inherits leaves something for itself.
 static_assert(shares_of(2).in_between < shares_of(1).in_between &&
               shares_of(4).in_between < shares_of(2).in_between);
 
-/// What pixels that others are taken from may be off by: what rays beside each other do not err
-/// alike is in the differences that stand for the cubic's error, many times over.
+/// Largest error of pixels from which others are interpolated: the part of it that differs between
+/// neighboring rays is in the differences that stand for the cubic's error, many times over.
 constexpr double most_of_rays = 2.5e-3;
 
-/// Whether rays so many pixels apart show all that is between them; `waves`: 1 / the longest step
-/// from ray to ray.
+/// Returns whether rays so many pixels apart show all that is between them; `waves`: 1 / the
+/// longest step from ray to ray.
 bool are_near(int pixels, double voxels_between_pixels, double waves) noexcept {
   return pixels * voxels_between_pixels * waves <= 1;
 }
@@ -87,8 +90,8 @@ Around around(const std::array<float, 4>* pixels, std::ptrdiff_t row_of_pixels, 
   return a;
 }
 
-/// How many cells a world length takes at most, in any direction: the largest singular value of the
-/// map, for cells may be sheared.
+/// Returns the largest number of cells per world length, in any direction: the largest singular
+/// value of the map, for cells may be sheared.
 double cells_by_length(const Volume& volume, Vec3<double> width) noexcept {
   const auto to_cells = [&](Vec3<double> world) {
     const Vec3<double> grid = volume.grid_from_world().vector(world);

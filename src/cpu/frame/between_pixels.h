@@ -42,11 +42,11 @@ class BetweenPixels {
   /// whether the next one is worth it. Where it is not, all that is left is to be traced.
   void finish_level(int stride, int threads);
   bool goes_on() const noexcept { return goes_on_; }
-  /// Of the tolerance, what rays of this level may be off by, so that there is something left for
-  /// the pixels between them.
+  /// Returns the fraction of the tolerance that rays of this level may use, so that some remains
+  /// for the pixels between them.
   double share_of_rays(int stride) const noexcept;
 
-  /// Whether the pixel is one of the levels that are finished.
+  /// Returns whether the pixel is one of the levels that are finished.
   bool is_done(int column, int row) const noexcept {
     return finished_ > 0 && column % finished_ == 0 && row % finished_ == 0;
   }
@@ -61,12 +61,12 @@ class BetweenPixels {
   BetweenPixels(const Frame& frame, const ImageView& image, int stride, double voxels,
                 ScreenMask mask);
 
-  /// Of each second pixel of each second row.
+  /// Facts of each second pixel of each second row.
   struct Known {
     float error, neighbor_deviation;
     float waves;  ///< 1 / the longest step
   };
-  /// What a pixel may be off by.
+  /// Error of a pixel.
   struct Cost {
     bool known = false;
     double inherited = 0, cubic = 0, uneven = 0;

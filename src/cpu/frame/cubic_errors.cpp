@@ -12,10 +12,10 @@
 namespace pellucid {
 namespace {
 
-/// Of fourth differences: 3/128 where they say all, 0.22 in waves as short as random scenes had
-/// them, and 0.375 where there is a kink between pixels. Of a kink sixth differences are twice as
-/// large as fourth ones, of waves of more than four pixels smaller than that: where sixth ones are
-/// small it is a curve. Of second differences, for what bends beside a kink take away of its
+/// Factor of fourth differences: 3/128 where they say all, 0.22 in waves as short as random scenes
+/// had them, and 0.375 where there is a kink between pixels. Of a kink sixth differences are twice
+/// as large as fourth ones, of waves of more than four pixels smaller than that: where sixth ones
+/// are small it is a curve. Of second differences, for what bends beside a kink take away of its
 /// fourth.
 constexpr float of_fourth = 0.38f, of_fourth_of_curve = 0.05f, of_sixth = 0.165f, of_second = 0.02f;
 
@@ -27,7 +27,7 @@ Pixel second_difference(const Pixel& a, const Pixel& b, const Pixel& c) noexcept
   return d;
 }
 
-/// Of `count` pixels in a line, `step` apart: between each and the next.
+/// Computes the errors for `count` pixels in a line, `step` apart: between each and the next.
 void find_line(const Pixel* pixel, std::size_t step, std::size_t count, float* out,
                std::size_t out_step) noexcept {
   if (count < 6) return;

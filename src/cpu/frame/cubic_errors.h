@@ -9,13 +9,14 @@
 
 namespace pellucid {
 
-/// What the cubic through four pixels of a lattice may err in the middle between the two inner
-/// ones: by fourth and second differences of the pixels around, the largest of the channels, so
-/// many times that it holds for a kink between any two of the six. Infinite where these are not in
-/// the lattice.
+/// Error of the cubic through four pixels of a lattice, in the middle between the two inner ones:
+/// by fourth and second differences of the pixels around, the largest of the channels, so many
+/// times that it holds for a kink between any two of the six. Infinite where these are not in the
+/// lattice.
 class CubicErrors {
  public:
-  /// Of the pixels whose columns and rows are multiples of `stride`, a power of two.
+  /// Computes the errors from the pixels whose columns and rows are multiples of `stride`, a power
+  /// of two.
   CubicErrors(const ImageView& image, ImageSize size, int stride, int threads);
 
   /// Between the lattice's pixel and the next one of its row; of its column.

@@ -21,7 +21,7 @@ struct PixelBox {
   }
 };
 
-/// What every pixel of the frame shares.
+/// Data that every pixel of the frame shares.
 struct Frame {
   /// `scene` must outlive the frame. Set-ups of layers come from `kept`, and those that are missing
   /// are made on so many threads.

@@ -11,7 +11,7 @@
 
 namespace pellucid {
 
-/// Where the pixels of a frame go: an image's own memory, row by row.
+/// View of an image's own memory, to which the pixels of a frame go, row by row.
 struct ImageView {
   std::size_t width;
   std::array<float, 4>* pixels;
@@ -30,7 +30,7 @@ struct ImageView {
 void store_pixel(const Frame& frame, const RayResult& result, std::size_t pixel,
                  const ImageView& image, RenderReport& report);
 
-/// What its rays went through.
+/// Adds the counts of a pixel's rays.
 void add_work(RenderReport& sum, const RayResult& result);
 
 /// One tile's part of the report, or the whole.

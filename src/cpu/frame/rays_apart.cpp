@@ -8,10 +8,10 @@
 namespace pellucid {
 namespace {
 
-/// How far apart on the box's faces rays may meet them, in longest steps: three of these are a wave
-/// of the data. There rays begin and end, so that waves along a face are waves of the picture,
-/// however much shorter for being seen at a grazing angle; CubicErrors hold for 2.25 pixels of the
-/// lattice a wave and more.
+/// Largest distance of rays on the box's faces, in longest steps: three of these are a wave of the
+/// data. There rays begin and end, so that waves along a face are waves of the picture, however
+/// much shorter for being seen at a grazing angle; CubicErrors hold for 2.25 pixels of the lattice
+/// a wave and more.
 constexpr double most_along_face = 3 / 2.25;
 
 }  // namespace
@@ -27,8 +27,8 @@ float RaysApart::operator()(const PellucidRay& ray) const noexcept {
   return static_cast<float>(std::min(most, most_along_face * facing(ray)));
 }
 
-/// Of the faces at which a ray enters the box and leaves it, how much the more slanted one faces
-/// it: the cosine to its normal, in cells. Infinite where it does not meet any.
+/// Returns the cosine between a ray and the normal, in cells, of the more slanted of the two faces
+/// at which it enters and leaves the box. Infinite where it does not meet any.
 double RaysApart::facing(const PellucidRay& ray) const noexcept {
   double entry = 0, exit = std::numeric_limits<double>::infinity(), square = 0;
   double of_entry = std::numeric_limits<double>::infinity(), of_exit = of_entry;

@@ -6,14 +6,14 @@
 
 namespace pellucid {
 
-/// How far rays through smooth blocks may be apart to show all that is between them, in the longest
+/// Largest distance of rays through smooth blocks that miss nothing between them, in the longest
 /// steps of these blocks.
 class RaysApart {
  public:
   /// At most.
   static constexpr double most = 0.9;
 
-  /// Of rays through the box of these blocks.
+  /// Prepares for rays through the box of these blocks.
   explicit RaysApart(const BlockRecords& records) noexcept;
 
   /// Beside this ray (grid coordinates).

@@ -61,7 +61,8 @@ Image make_image(ImageSize size, const RenderOptions& options) {
   return image;
 }
 
-/// Of tiles from coarse to fine, those from the `first` on whose pixels are multiples of `stride`.
+/// Returns the tiles from the `first` on, in their order from coarse to fine, whose pixels are
+/// multiples of `stride`.
 std::span<const Tile> tiles_of(const std::vector<Tile>& tiles, std::size_t first, int stride) {
   std::size_t end = first;
   while (end < tiles.size() && 1 << tiles[end].level >= stride) ++end;

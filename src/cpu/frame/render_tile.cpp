@@ -81,7 +81,7 @@ std::vector<RayResult> trace(const Frame& frame, const std::vector<RayPart>& ray
   return results;
 }
 
-/// Of a ray that passes a region by, and so do those beside it.
+/// Returns the result of a ray that misses the region, as do its neighbors.
 RayResult nothing_of_region() {
   RayResult nothing = missed_ray_result();
   nothing.neighbor_deviation = 0;

@@ -14,7 +14,7 @@
 
 namespace pellucid {
 
-/// How fast rays are, for those that may have to stop soon. Shared by the threads of a frame.
+/// Speed of rays, for frames that may have to stop soon. Shared by the threads of a frame.
 class TileSpeed {
  public:
   /// Returns how many rays, a multiple of 16, are done in some 2 ms.
@@ -31,7 +31,7 @@ class TileSpeed {
   std::atomic<double> seconds_per_ray_{0};
 };
 
-/// How a tile is rendered.
+/// Options of a tile.
 struct TileTask {
   int level;               ///< of `between`, whose coarser levels are done
   BetweenPixels* between;  ///< null: all pixels are traced

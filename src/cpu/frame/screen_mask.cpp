@@ -18,7 +18,7 @@ double depth_of(const CameraFrame<double>& camera, Vec3<double> world) noexcept 
   return camera.perspective ? dot(world - camera.position, camera.forward) : 1;
 }
 
-/// Of the grid's box, in the world.
+/// Returns the corners of the grid's box, in the world.
 std::array<Vec3<double>, 8> corners_of(const Volume& volume, const BlockRecords& records) {
   const Vec3<double> least = plane(records, 0, 0, 0),
                      most = plane(records, records.axis[0].cells(), records.axis[1].cells(),

@@ -12,16 +12,17 @@
 
 namespace pellucid {
 
-/// How far the volume reaches from the eye, along the camera's axis; with parallel rays 1.
+/// Returns the largest depth of the volume from the eye, along the camera's axis; 1 for parallel
+/// rays.
 double farthest_depth(const CameraFrame<double>& camera, const Volume& volume,
                       const BlockRecords& records) noexcept;
 
-/// Where on the screen rays may be unlike those beside them: where one goes through a block that is
-/// gone through cell by cell, or past an edge of the volume's box. In squares of pixels: rays
-/// through one that is not marked, and through the first pixels of the next ones, enter the box by
-/// one face and leave it by one, and with those through the squares around have all between them in
-/// blocks that are smooth, of one material, or empty. An edge of the box is a kink of the picture,
-/// or a step, as CubicErrors hold for.
+/// Mask of the squares of the screen in which rays may differ from those beside them: where one
+/// goes through a block that is gone through cell by cell, or past an edge of the volume's box. In
+/// squares of pixels: rays through one that is not marked, and through the first pixels of the next
+/// ones, enter the box by one face and leave it by one, and with those through the squares around
+/// have all between them in blocks that are smooth, of one material, or empty. An edge of the box
+/// is a kink of the picture, or a step, as CubicErrors hold for.
 class ScreenMask {
  public:
   /// `square`: pixels, a power of two. `box`: the corners of the only part of the volume that is

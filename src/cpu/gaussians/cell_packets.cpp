@@ -13,7 +13,7 @@
 namespace pellucid {
 namespace {
 
-/// Of the tolerance, for what is not looked at.
+/// Fraction of the tolerance for primitives that are left out.
 constexpr double left_out_share = 1.0 / 16;
 
 /// Below, what budgets in binary32 lose and what folding in double does would be most of it.

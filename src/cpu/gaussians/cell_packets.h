@@ -12,9 +12,9 @@
 
 namespace pellucid {
 
-/// What K (v - c) does in a cell, about: how far it moves, and by how much its slope changes from
-/// cell to cell; in the mean over blocks in which a primitive may matter, spread over all, of the
-/// one that moves most. It tells what is faster, and nothing else.
+/// Variation of K (v - c) in a cell: how far it moves, and how much its slope changes from cell to
+/// cell; the mean over blocks in which a primitive may matter, spread over all, of the one that
+/// moves most. It serves to choose the faster way, and nothing else.
 struct Movement {
   double in_cell = 0, bend = 0;
 };

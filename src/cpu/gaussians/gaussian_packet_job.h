@@ -12,12 +12,11 @@ namespace pellucid {
 
 using GaussianPacketKernel = void (*)(const PellucidGaussianPacketJob*);
 
-/// Whether packets can go through all of the channels (packet_setup.h).
+/// Returns whether packets can go through all of the channels (packet_setup.h).
 bool suits_packets(const Channels& channels, double largest_extinction);
 
-/// What rays through several channels are told, whichever way they go; all that is given is
-/// referred to. `largest_color` of the transfer function. Tolerance and mixture are left to the
-/// caller.
+/// Fills the job that both multivariate kernels share; refers to all arguments. `largest_color` of
+/// the transfer function. Tolerance and mixture are left to the caller.
 PellucidGaussianPacketJob gaussian_packet_job(const Channels& channels,
                                               const MultivariateBlocks& blocks,
                                               const MultichannelGrid& grid,

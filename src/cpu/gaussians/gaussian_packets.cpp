@@ -16,15 +16,15 @@ namespace {
 /// Below 1e-5 binary32 cannot keep most rays' tolerance; some of what was asked for is spent on
 /// what blocks leave out.
 constexpr double least_tolerance = 0.95e-5;
-/// How far rounding may move the data, in widths.
+/// Largest shift of the data by rounding, in widths.
 constexpr double farthest_rounding = 1e-2;
-/// Of the reach of a primitive, in u of binary32: how far K (v - c) is off where it matters, beside
-/// what places in a cell are.
+/// Error of K (v - c) where it matters, in u of binary32 of the primitive's reach, besides that of
+/// positions in a cell.
 constexpr double rounding_in_units = 8;
 
 constexpr double unit{rounding_unit<float>};
 
-/// Whether binary32 has all of the values.
+/// Returns whether binary32 has all of the values.
 bool fits_binary32(const Volume& volume) {
   return volume.visit([](const auto& grid) {
     using Value = std::remove_cvref_t<decltype(*grid.data)>;
@@ -36,8 +36,8 @@ GaussianPacketKernel kernel_for(InstructionSet set) {
   return PELLUCID_KERNEL_OF(set, pellucid_integrate_gaussian_packets);
 }
 
-/// What rounding of the terms of K (v - c) makes, in units: where the primitive matters they may be
-/// large and cancel. Each is as large as the others let it be there, or as the data do.
+/// Returns the error of K (v - c) by rounding of its terms, in units: where the primitive matters
+/// they may be large and cancel. Each is as large as the others let it be there, or as the data do.
 double cancelled(const Gaussian<double>& g, const Channels& channels, double reach) {
   double sum = 0;
   for (int i = 0; i < g.rows; ++i) {

@@ -28,8 +28,8 @@ class GaussianPackets {
       const MultivariateBlocks& blocks, const MultichannelGrid& grid, const RayTolerance& wanted,
       double negligible, InstructionSet instruction_set, const ParallelFor& parallel);
 
-  /// What was found of the rays, `error` infinite where they are to go one by one. `share`: of the
-  /// tolerance, what they may be off by, beside what is left out. `waves` as in the job.
+  /// Integrates the rays; `error` is infinite where they are to go one by one. `share`: fraction of
+  /// the tolerance that they may use, besides the part for what is left out. `waves` as in the job.
   void trace(const std::vector<PellucidRay>& rays, double share, const float* waves, bool depth,
              PellucidRayResult* results) const;
 

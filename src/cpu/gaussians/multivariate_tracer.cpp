@@ -115,7 +115,7 @@ class MultivariateTracer : public RayTracer {
     }
   }
 
-  /// Those of the rays that steps gave up, of which nothing is known for others beside them.
+  /// Integrates the rays that steps gave up, which tell nothing about others beside them.
   void integrate_what_is_left(const std::vector<PellucidRay>& rays, double share,
                               std::vector<PellucidRayResult>& found) const {
     std::vector<PellucidRay> left;

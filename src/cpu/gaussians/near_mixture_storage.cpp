@@ -13,7 +13,7 @@
 namespace pellucid {
 namespace {
 
-/// What K (v - c) is made of: its terms, together.
+/// Returns the sum of the magnitudes of the terms of K (v - c).
 double size_of_terms(const Gaussian<double>& g, const double* largest) {
   double size = 0;
   for (int c = 0; c < g.channels; ++c) {
@@ -38,7 +38,7 @@ float square_in_float(double size, double exponent) {
   return static_cast<float>(reach * reach) * (1 + 16 * rounding_unit<float>);
 }
 
-/// How far column k of K is from what the others span, a little less.
+/// Returns the distance of column k of K from the span of the others, a little less.
 float least_scale(const Gaussian<double>& g, int k) {
   std::vector<std::array<double, max_channels>> others;
   const auto column = [&](int c) {

@@ -7,7 +7,7 @@
 
 namespace pellucid {
 
-/// What rays in lanes look at of a transfer function before they integrate.
+/// Parts of a transfer function that rays in lanes look at before they integrate.
 class NearMixtureStorage {
  public:
   NearMixtureStorage() = default;
@@ -18,10 +18,10 @@ class NearMixtureStorage {
   NearMixtureStorage(const double* largest, bool off, const MultivariateTransfer<double>& transfer,
                      double opacity, double diagonal);
 
-  /// Whether binary32 has its numbers.
+  /// Returns whether binary32 has its numbers.
   bool suits_packets() const noexcept { return suits_packets_; }
 
-  /// Of this object while it stays where it is.
+  /// Returns a view of this object, valid while it is not moved.
   const NearMixture& view() noexcept {
     mixture_.primitive = near_.data();
     return mixture_;

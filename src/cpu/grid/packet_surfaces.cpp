@@ -22,8 +22,7 @@ constexpr double reach = 0x1p-14;
 /// By what share of it the extinction is raised at a value, at the second by twice that, and so on:
 /// control points on a line between others are none for BinnedTransfer.
 constexpr double kink = 0x1p-40;
-/// What there is of it where nothing absorbs, over the longest way through the data: an optical
-/// depth.
+/// Optical depth of a medium that absorbs nothing, over the longest way through the data.
 constexpr double next_to_nothing = 1e-20;
 
 /// The function in the making.

@@ -43,7 +43,7 @@ class PacketTracer {
   /// together, and what becomes of a ray does not depend on them. `share`: of the tolerance, what
   /// the parts may be off by. `depth`: whether half_opacity_depth is asked for.
   std::vector<RayResult> trace(const std::vector<RayPart>& in_grid, double share, bool depth) const;
-  /// Whether smooth blocks are sampled.
+  /// Returns whether smooth blocks are sampled.
   bool goes_in_steps() const noexcept { return smooth_.longest_step > 0; }
   /// RayResult::longest_step of no ray is longer.
   double most_between_rays() const noexcept { return RaysApart::most * smooth_.longest_step; }

@@ -12,7 +12,7 @@
 
 namespace pellucid {
 
-/// What single rays go through, and how.
+/// Data and options of single rays.
 struct SingleRays {
   const Volume& volume;
   const TransferTables& transfer;

@@ -24,13 +24,13 @@ Kernel kernel_for(const TracerTask& task) {
                             pellucid_meet_surfaces);
 }
 
-/// Whether a layer is isosurfaces and nothing else.
+/// Returns whether a layer is isosurfaces and nothing else.
 bool shows_plain_isosurfaces(const Layer& layer) {
   return !(largest_extinction(layer) > 0) && has_plain_isosurfaces(layer);
 }
 
-/// How much wider than its value a surface's support is, in largest values of the data: what is
-/// narrower is a jump for BinnedTransfer.
+/// Width of a surface's support around its value, as a share of the largest value of the data: a
+/// narrower one is a jump for BinnedTransfer.
 constexpr double support_width = 0x1p-14;
 
 class SurfaceTracer : public RayTracer {

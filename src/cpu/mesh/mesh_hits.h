@@ -9,7 +9,7 @@
 
 namespace pellucid {
 
-/// Where a ray meets the boundary of a mesh.
+/// Crossings of a ray and the boundary of a mesh.
 class MeshHits {
  public:
   /// Valid until the next call.

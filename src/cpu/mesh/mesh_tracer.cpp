@@ -63,7 +63,8 @@ class MeshTracer : public RayTracer {
  protected:
   virtual void integrate(const std::vector<RayPart>& rays, const TraceOptions& options,
                          std::vector<RayResult>& results) const = 0;
-  /// Of rays of which this is known; where it does not, the general path does.
+  /// Finds the half-opacity depths of rays for which this is known; for others the general path
+  /// does.
   virtual void find_half_opacity(const std::vector<RayPart>& /*rays*/,
                                  std::vector<RayResult>& /*results*/) const {}
 
@@ -254,7 +255,7 @@ class MultivariateMeshTracer : public MeshTracer {
   }
 
  private:
-  /// Of the tolerance, for what is not looked at.
+  /// Fraction of the tolerance for primitives that are left out.
   static constexpr double left_out_share = 1.0 / 16;
 
   const MultivariateTransferFunction& transfer_function_;

@@ -146,7 +146,7 @@ class GridProjector : public LayerProjector {
   /// Below all floats: the bound of a block without data.
   static constexpr float nothing = -std::numeric_limits<float>::infinity();
 
-  /// What a ray has met so far.
+  /// Cells that a ray has met so far.
   struct Cells {
     ValueGatherer& gatherer;
     long count = 0;
@@ -542,7 +542,7 @@ class GridProjector : public LayerProjector {
     return touched;
   }
 
-  /// Whether a cell across the touched planes has data, or has none.
+  /// Returns whether a cell across the touched planes has data, or has none.
   bool has_neighbor(const int (&cell)[3], const Touched& touched, bool with_data) const {
     int neighbor[3];
     for (int n = 0; n < 27; ++n) {

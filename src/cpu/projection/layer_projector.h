@@ -11,7 +11,7 @@
 
 namespace pellucid {
 
-/// What one call keeps from ray to ray. Used by one thread.
+/// Memory that one call keeps from ray to ray. Used by one thread.
 struct ProjectionWorkspace {
   ProjectionWorkspace() = default;
   ProjectionWorkspace(const ProjectionWorkspace&) = delete;

@@ -20,8 +20,8 @@ Kernel kernel_for(InstructionSet set) {
   return PELLUCID_KERNEL_OF(set, pellucid_sample_multivariate);
 }
 
-/// Whether places in the primitives, K (v - c), are known to 2e-4 when the data are rounded to
-/// binary32.
+/// Returns whether places in the primitives, K (v - c), are known to 2e-4 when the data are rounded
+/// to binary32.
 bool binary32_places(const Channels& channels, const GaussianMixture<double>& all) {
   for (int i = 0; i < all.count; ++i) {
     const Gaussian<double>& g = all.primitive[i];

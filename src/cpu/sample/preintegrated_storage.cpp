@@ -17,7 +17,7 @@ struct Integrals {
   Rgb<double> source{};
 };
 
-/// Of one interval of the function, from a to b in it.
+/// Integrates one interval of the function, from a to b in it.
 Integrals integrate(const PiecewiseLinear<double>& transfer, int interval, double a, double b) {
   const Material<double> m = transfer.evaluate_in(interval, a),
                          n = transfer.evaluate_in(interval, b);

@@ -77,7 +77,7 @@ class SampledPath {
   LayerMerge merge_;  ///< for surfaces and tetrahedra
   std::vector<std::unique_ptr<LayerOnRay>> layers_;
   std::vector<OnSegment> on_;
-  /// Whether all layers' points go back, and none has slices: isosurfaces are then looked for where
+  /// True if all layers' points go back, and none has slices: isosurfaces are then looked for where
   /// samples change their sides, which takes less time than a walk.
   bool by_sides_ = true;
   // Of the ray:

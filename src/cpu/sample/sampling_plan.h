@@ -10,7 +10,7 @@
 
 namespace pellucid {
 
-/// How a method for comparison samples the layers of a scene; shared by threads.
+/// Plan by which a method for comparison samples the layers of a scene; shared by threads.
 class SamplingPlan {
  public:
   /// `layers` must outlive the object; of a scene that check_method() accepts. `integration`: its

@@ -27,7 +27,7 @@
 namespace pellucid::plugin {
 namespace {
 
-/// Of a side of a box: what boxes may share at their border.
+/// Share of a box's side by which boxes may overlap at their border.
 constexpr double border = 1e-6;
 
 bool overlap(const vtkBoundingBox& a, const vtkBoundingBox& b) {

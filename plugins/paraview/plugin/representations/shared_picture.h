@@ -80,7 +80,7 @@ void set_bounds(vtkInformation& view, vtkPVDataRepresentation& representation,
 /// Returns the box around a box that a volume moves.
 vtkBoundingBox moved(const vtkBoundingBox& box, vtkProp3D& volume);
 
-/// Whether a volume was moved since the last call.
+/// Watch on a volume: tells whether it was moved since the last call.
 class Mover {
  public:
   bool moved(vtkProp3D& volume);
