@@ -10,6 +10,7 @@ import tempfile
 import unittest
 
 import check_blocks
+import check_comments
 import check_lines
 import check_links
 import run_blocks
@@ -33,6 +34,41 @@ class Repository(unittest.TestCase):
 
     def found(self, check, *arguments):
         return "\n".join(check(self.root, *arguments))
+
+
+class Comments(Repository):
+    def kinds(self, text):
+        return [kind for kind, *_ in check_comments.found_in(text)]
+
+    def test_clauses(self):
+        for word in ("What", "Of", "Where", "Whether", "How", "Those", "As"):
+            self.assertEqual(self.kinds(f"/// {word} it is.\nstruct Thing {{}};\n"), ["clauses"])
+            self.assertEqual(self.kinds(f"/// {word} it is.\nint thing();\n"), ["clauses"])
+        self.assertEqual(self.kinds("/// A thing.\n/// What follows.\nint thing;\n"), [])
+        self.assertEqual(self.kinds("/// Offset of a thing.\nint thing;\n"), [])
+
+    def test_notes(self):
+        self.assertEqual(self.kinds("int n;  ///< of things\nint m;  ///< number of things\n"),
+                         ["notes"])
+
+    def test_functions(self):
+        for function in ("int thing(int n);", "explicit Thing(int n);",
+                         "template <class T, int N>\nPELLUCID_HD constexpr Rgb<T> thing(T n) {",
+                         "[[nodiscard]] static bool operator==(const Thing&);"):
+            self.assertEqual(self.kinds(f"/// The thing.\n{function}\n"), ["functions"], function)
+            self.assertEqual(self.kinds(f"/// Returns it.\n{function}\n"), [], function)
+        for other in ("struct Thing {", "int thing = other(1);", "using Thing = void (*)(int);",
+                      "class Thing : public Base<int> {", "int thing{};"):
+            self.assertEqual(self.kinds(f"/// The thing.\n{other}\n"), [], other)
+        self.assertEqual(self.kinds("/// Values of it.\nint thing();\n"), ["functions"])
+
+    def test_numbers(self):
+        self.write("src/a.h", "/// What it is.\nstruct A {};\n")
+        self.write("tests/a.h", "/// What it is.\nstruct A {};\n")  # is not counted
+        none = dict.fromkeys(check_comments.KINDS, 0)
+        self.assertIn("1 clauses", self.found(check_comments.check, none))
+        self.assertEqual(self.found(check_comments.check, dict(none, clauses=1)), "")
+        self.assertIn("lower", self.found(check_comments.check, dict(none, clauses=99)))
 
 
 class Links(Repository):
