@@ -3,12 +3,11 @@
 
 #include "pellucid/packet/interface.h"
 
-/// What goes between the renderer and packets of rays through several fields, as
-/// packet/interface.h.
+/// Interface of the renderer and packets of rays through several fields, as packet/interface.h.
 extern "C" {
 
 struct PellucidGaussianPacketJob {
-  /// Of this the grid without data, its blocks, what is wanted, rays and results.
+  /// Grid without data, its blocks, tolerance, rays and results; other members are not used.
   PellucidPacketJob grid_and_rays;
   PellucidView<PellucidMultichannelGrid> grid;
   PellucidView<PellucidPrimitiveSets> primitives;  ///< per block: those that matter there

@@ -7,9 +7,9 @@
 #include "pellucid/packet/kernel.h"
 #include "pellucid/packet/view.h"
 
-/// What goes between the renderer and the packets of rays, which are compiled once for each
-/// instruction set, each time with namespace pellucid under another name: plain numbers and
-/// pointers, outside of it, that mean the same on both sides.
+/// Interface of the renderer and the packets of rays, which are compiled once for each instruction
+/// set, each time with namespace pellucid under another name: plain numbers and pointers, outside
+/// of it, that mean the same on both sides.
 extern "C" {
 
 /// A ray in grid coordinates, its parameter the world arc length; begin < end are where it enters
@@ -31,7 +31,7 @@ enum PellucidStatus : std::uint8_t {
   pellucid_left  ///< to the next way of following rays: the result means nothing
 };
 
-/// What one ray gathers: RayResult, as far as packets know it.
+/// Result of one ray: RayResult, as far as packets know it.
 struct PellucidRayResult {
   double radiance[3], opacity, optical_depth;
   double error;

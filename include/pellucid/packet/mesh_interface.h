@@ -5,7 +5,7 @@
 
 #include "pellucid/packet/interface.h"
 
-/// As packet/interface.h, for rays through a variable of a mesh.
+/// Interface as packet/interface.h, for rays through a variable of a mesh.
 extern "C" {
 
 /// A part of a ray in the world: its direction of length 1; between which arc lengths it is, the
@@ -28,11 +28,11 @@ struct PellucidMeshJob {
   PellucidView<PellucidTetrahedra> mesh;
   PellucidView<PellucidMeshPoints> points;  ///< one per point
   PellucidView<PellucidMeshFields> fields;
-  /// Of several variables: their values at value_points points, 0 where they have none there: of
-  /// the first four channels at each point, then of the next four.
+  /// Values of several variables: their values at value_points points, 0 where they have none
+  /// there: of the first four channels at each point, then of the next four.
   const double* values;
   std::int32_t value_points;
-  /// Whether rays see the mesh in double, and not in binary32.
+  /// True if rays see the mesh in double, and not in binary32.
   std::int32_t in_double;
   // The transfer function and what is wanted.
   PellucidView<PellucidBinnedTransfer> transfer;  ///< of one variable

@@ -3,7 +3,7 @@
 
 #include "pellucid/packet/interface.h"
 
-/// What goes between the renderer and rays that sample several fields, as packet/interface.h.
+/// Interface of the renderer and rays that sample several fields, as packet/interface.h.
 extern "C" {
 
 struct PellucidMultivariateSamplerJob {

@@ -6,16 +6,16 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// Where rays in lanes have which opacity, from segment to segment: how much half of it is is known
-/// at a ray's end alone, and then that has to be looked for between two places that are near to
-/// each other. What is noted of a ray depends on no other lane.
+/// Record of the opacity along each ray, segment by segment. Half of a ray's opacity is known only
+/// at its end; the record then brackets its depth between two positions that are near to each
+/// other. What is noted of a ray depends on no other lane.
 template <int N>
 class OpacityTrace {
  public:
   using F = Batch<float, N>;
   using M = BatchMask<N>;
 
-  /// Where `asked` is false nothing is noted, and nothing found.
+  /// Starts a record; if `asked` is false, nothing is recorded and nothing found.
   explicit OpacityTrace(bool asked) noexcept : asked_(asked) {}
 
   /// The lanes begin with other rays.

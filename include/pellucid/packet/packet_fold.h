@@ -9,7 +9,7 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// What was integrated by other means, lane by lane; of other lanes nothing.
+/// Results of lanes that fell back to another integrator; zero in other lanes.
 template <int N>
 struct HandedBack {
   double optical_depth[N] = {}, opacity[N] = {}, transparency[N], radiance[3][N] = {};
@@ -40,8 +40,7 @@ PellucidRayResult light_of_lane(const SegmentResult<Batch<double, N>>& all, int 
   return r;
 }
 
-/// What rays in lanes have gathered, folded in double, and what their tolerances have left, in
-/// float.
+/// Results of rays in lanes, composited in double, and their remaining tolerances, in float.
 template <int N>
 class PacketFold {
  public:
@@ -75,7 +74,7 @@ class PacketFold {
                                select(lanes, convert<double>(s.transparency), D(1)),
                                {masked(s.radiance.r), masked(s.radiance.g), masked(s.radiance.b)}});
   }
-  /// What was handed back, of these world lengths, and what it costs.
+  /// Adds results that were handed back, of these world lengths, and charges their errors.
   void add(const HandedBack<N>& s, F lengths) noexcept {
     const F before = transparency();
     fold_.add(
@@ -87,8 +86,7 @@ class PacketFold {
                  convert<float>(D::load(s.error)) * F(1 + 4 * rounding_unit<float>));
   }
 
-  /// Those of the lanes whose rays no longer matter from here on, and did until now. What is
-  /// behind is charged to them.
+  /// Returns the lanes that terminate early now, and charges the neglected remainder to them.
   M cut_off(M lanes) noexcept {
     const M done = lanes & (!cut_off_) & budget.allows_termination(remainder_bound(), tolerance_);
     cut_off_ = cut_off_ | done;
@@ -96,8 +94,8 @@ class PacketFold {
   }
 
   SegmentResult<D> result() const noexcept { return fold_.result(); }
-  /// What rays of so many segments may be off by. Folding in double costs 4 u a segment, adding up
-  /// costs in float 2 u of them.
+  /// Returns the errors of rays of so many segments. Folding in double costs 4 u a segment, adding
+  /// up costs in float 2 u of them.
   D error(D segments) const noexcept {
     constexpr double folding = 8 * rounding_unit<double>;
     constexpr double account = 2 * static_cast<double>(rounding_unit<float>);

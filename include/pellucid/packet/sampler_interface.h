@@ -3,7 +3,7 @@
 
 #include "pellucid/packet/interface.h"
 
-/// What goes between the renderer and the packets of rays that sample; as packet/interface.h.
+/// Interface of the renderer and the packets of rays that sample; as packet/interface.h.
 extern "C" {
 
 enum PellucidSamplingRule : std::int32_t { pellucid_midpoint, pellucid_preintegrated };

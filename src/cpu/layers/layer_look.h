@@ -10,7 +10,7 @@
 
 namespace pellucid {
 
-/// What a layer shows beside its functions, as rays need it: light, a factor of the extinction and
+/// Look of a layer beside its functions, as rays need it: light, a factor of the extinction and
 /// surfaces.
 class LayerLook {
  public:
@@ -63,7 +63,7 @@ class LayerLook {
 /// farther from them than rounding moves data, or by `off`. None: the channel has no isosurfaces.
 std::optional<TransferFunction> isosurface_support(const LayerLook& look, int channel, double off);
 
-/// Where a ray meets the plane of a slice.
+/// Crossing of a ray and the plane of a slice.
 struct SlicePosition {
   double t;            ///< world arc length; infinite where it does not
   double error;        ///< largest error of t

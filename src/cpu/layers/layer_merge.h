@@ -11,7 +11,7 @@
 
 namespace pellucid {
 
-/// What comes next on a ray through several layers.
+/// Next part of a ray through several layers.
 struct MergedPart {
   enum class Kind {
     unknown,  ///< an opacity of at most `opacity` at a point, of which no more is known

@@ -9,7 +9,7 @@
 
 namespace pellucid {
 
-/// What a layer has at a point of a ray.
+/// Data of a layer at a point of a ray.
 struct LayerPoint {
   int function = -1;  ///< index of LayerSource::functions(); -1: absent, or vacuum
   double value[max_channels]{};
@@ -28,7 +28,7 @@ class LayerPoints {
   LayerPoints& operator=(const LayerPoints&) = delete;
   virtual ~LayerPoints() = default;
 
-  /// As of LayerStream.
+  /// Does what those of LayerStream do.
   virtual Interval<double> start(const Ray<double>& ray) = 0;
   virtual void restrict_to_range(Interval<double> range) = 0;
   /// Returns the first position from t on at which the layer may absorb, as far as blocks of its

@@ -13,7 +13,7 @@ namespace pellucid {
 
 class DeviceLayer;
 
-/// How a frame shows its layers: all that a layer's set-up depends on beside the layer.
+/// Settings of a frame for its layers: all that a layer's set-up depends on beside the layer.
 struct LayerSetting {
   Integration integration;
   std::vector<Light> lights;

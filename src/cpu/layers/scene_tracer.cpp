@@ -31,7 +31,7 @@ bool is_left(const RayResult& result) {
   return result.status != RayStatus::followed || !std::isfinite(result.error);
 }
 
-/// Of a ray, a stretch that one tracer follows.
+/// Stretch of a ray that one tracer follows.
 struct Piece {
   static constexpr int general = -1;
   int tracer;  ///< index of the layer that is alone, or `general`
@@ -41,7 +41,7 @@ struct Piece {
 
 /// A ray on its way, composited front to back.
 struct Journey {
-  /// What was found on a piece.
+  /// Result of a piece.
   struct Found {
     Interval<double> range;
     double opacity_before;  ///< of the ray

@@ -9,11 +9,11 @@
 
 namespace pellucid {
 
-/// Of all visible layers of a scene. In: their set-ups with their clips. Out: what rays gather. A
-/// ray is cut where a layer may begin or end: where one layer is alone, its own tracer follows it,
-/// in packets where it can; everything else goes the general path (general_path.h). So layers side
-/// by side cost what each costs by itself. The parts are composited front to back, and share the
-/// tolerance.
+/// Returns the tracer of all visible layers of a scene. In: their set-ups with their clips. Out:
+/// what rays gather. A ray is cut where a layer may begin or end: where one layer is alone, its own
+/// tracer follows it, in packets where it can; everything else goes the general path
+/// (general_path.h). So layers side by side cost what each costs by itself. The parts are
+/// composited front to back, and share the tolerance.
 ///
 /// With a method other than `exact`, the only layer's sampler in packets follows whole rays, where
 /// it has one; everything else is sampled ray by ray (sample/sampled_path.h).

@@ -128,7 +128,8 @@ class BlockMarch {
     return convert<std::int32_t>(clamp(block_place, D(0), D(grid_.blocks[a] - 1)));
   }
 
-  /// Where the lanes leave the cubes of 2^level blocks that they are in, and for which block.
+  /// Finds the lengths at which the lanes leave their cubes of 2^level blocks, and the blocks that
+  /// follow.
   void cross(M lanes, const I* block, I level) noexcept {
     const bool large = any(lanes & (level > I(0)));
     const I side = large ? side_of_cube<N>(level) : I(1);

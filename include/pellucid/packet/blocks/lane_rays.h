@@ -42,7 +42,7 @@ struct LaneRays {
   }
 };
 
-/// How many blocks wide the cubes of these levels are.
+/// Returns the widths of the cubes of these levels, in blocks.
 template <int N>
 Batch<std::int32_t, N> side_of_cube(Batch<std::int32_t, N> level) noexcept {
   static constexpr std::int32_t sides[8] = {1, 2, 4, 8, 16, 32, 64, 128};

@@ -19,7 +19,7 @@ struct PacketGrid {
   const std::int32_t* records;  ///< BlockRecord, as six of them
   std::ptrdiff_t row, slice;    ///< values between neighbours along y, z
 
-  /// Whether there are cells outside of the outermost values.
+  /// Returns whether there are cells outside of the outermost values.
   bool padded() const noexcept { return padding[0] + padding[1] + padding[2] > 0; }
 
   template <class Index>

@@ -24,7 +24,7 @@ class RaysInBlocks {
     end = rays_.end;
   }
 
-  /// Where the rays are at these world lengths, in plane coordinates.
+  /// Computes the positions of the rays at these world lengths, in plane coordinates.
   PELLUCID_ALWAYS_INLINE void place(D at, D* to) const noexcept {
     for (int a = 0; a < 3; ++a) to[a] = rays_.origin[a] + at * rays_.direction[a];
   }
@@ -53,8 +53,8 @@ class RaysInBlocks {
     return block_of(to);
   }
 
-  /// Those of the lanes that are in a block to skip at the given world length, and where they leave
-  /// the cube of such blocks.
+  /// Returns the lanes that are in a block to skip at the given world length, and the lengths at
+  /// which they leave the cube of such blocks.
   M find_skipped(M lanes, D at, D& leave) const noexcept {
     D to[3];
     place(at, to);

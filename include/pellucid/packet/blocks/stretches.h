@@ -10,7 +10,7 @@ namespace pellucid {
 /// ray's they are. Those of a ray come in order.
 template <int N>
 struct Stretches {
-  /// As many as that are found ahead of a ray at a time.
+  /// Number of stretches that are found ahead of a ray at a time.
   static constexpr int of_a_ray = 12;
   static constexpr int most = N * of_a_ray;
   /// Arrays are written and read by the vector, and so a little beyond their end.

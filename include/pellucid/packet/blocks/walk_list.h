@@ -91,7 +91,7 @@ class WalkList {
     }
   }
 
-  /// As derivative_variation() and derivative_oscillation(), rounded upward.
+  /// Appends derivative_variation() and derivative_oscillation(), rounded upward.
   void append_variation(M lanes, I ray, I block, Walks<N>& walks) const noexcept {
     I word[6];
     const I record = block * I(sizeof(BlockRecord) / sizeof(std::int32_t));

@@ -81,7 +81,7 @@ class MultivariateCellPacket {
                                   int at) noexcept { return matters(data, rows, at); }));
   }
 
-  /// Whether anything of the cells may be seen, by the ranges of their data.
+  /// Returns the lanes in which anything of the cells may be seen, by the ranges of their data.
   [[gnu::flatten]] M matters(const CubicBernstein<D>* data, typename Cells::Rows& rows,
                              int at) noexcept {
     const int channels = mixture_.transfer.channels;
@@ -127,7 +127,7 @@ class MultivariateCellPacket {
   int first_, count_;
   Cells march_;
   Panels lanes_;
-  /// Of a cell's data, by channel; kept here so that they are not set to 0 for each.
+  /// Range of a cell's data, by channel; kept here so that they are not set to 0 for each.
   F lower_[max_channels], upper_[max_channels];
 };
 

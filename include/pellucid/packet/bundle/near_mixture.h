@@ -55,10 +55,10 @@ struct NearMixture {
   /// `diagonal`, which none is beyond.
   double left_out = 0, diagonal = 1;
   double charged = 0;  ///< the same with what errors of the data may make of it
-  /// Whether what double rounds K (v - c) by is next to nothing in binary32, and there are no
+  /// True if what double rounds K (v - c) by is next to nothing in binary32, and there are no
   /// tables.
   bool suits_binary32 = false;
-  /// How fast the extinction of all Gaussians together may change with a channel, at most.
+  /// Largest slope of the extinction of all Gaussians together, by channel.
   double steepness[max_channels] = {};
 };
 

@@ -50,7 +50,7 @@ class PanelLanes {
   using Rows = PanelRows<N, Data>;
   using Span = MultivariateSpan<D, Data<D>>;
   static constexpr int most_cuts = 60;
-  /// What many packets have one after the other: with 16 lanes 800 kB, on the stack.
+  /// Workspace that many packets use one after the other: with 16 lanes 800 kB, on the stack.
   struct Room {
     Rows rows;
     typename Panels::Room terms;
@@ -76,9 +76,9 @@ class PanelLanes {
     see_less();
   }
 
-  /// How much may be left out from here on: all rays may leave out as much light, and where much is
-  /// in front there is less of it. What rays become depends on when this is called: it must not
-  /// depend on other lanes.
+  /// Sets the light that may be left out from here on: all rays may leave out as much light, and
+  /// where much is in front there is less of it. What rays become depends on when this is called:
+  /// it must not depend on other lanes.
   void see_less() noexcept {
     less = less_by_now();
     left_out = F(static_cast<float>(mixture_.left_out)) * exp(min(less, F(60)));
@@ -86,7 +86,7 @@ class PanelLanes {
   F less{0};      ///< ln of how much more may be left out than on the longest ray, behind nothing
   F left_out{0};  ///< that extinction
 
-  /// Where spans are put down next; whether no lane waits for what is there.
+  /// Return the row in which spans are stored next; and whether no lane waits for its contents.
   int row() const noexcept { return row_; }
   bool has_row() const noexcept { return none((spans_.waiting & I(1 << row_)) != I(0)); }
   /// Spans were put down there in these lanes.
@@ -110,7 +110,7 @@ class PanelLanes {
   const OpacityTrace<N>& trace() const noexcept { return trace_; }
 
   SegmentResult<D> result() const noexcept { return fold_.result(); }
-  /// What that may be off by; `longer`: how much longer the rays may be where spans were passed
+  /// Returns the error of that; `longer`: how much longer the rays may be where spans were passed
   /// over, as left_out says.
   D error(const F& longer) const noexcept {
     const D all = D(mixture_.diagonal) + convert<double>(longer / share_of_diagonal());
@@ -226,7 +226,7 @@ class PanelLanes {
     if (any(rest)) cut(rest, panel);
   }
 
-  /// Of a span that is cut, what lies behind the panel that is done.
+  /// Continues spans that are cut with the part behind the panel that is done.
   void next_part(M lanes) noexcept {
     const M more = lanes & (open_ > I(0));
     from_ = select(more, to_, from_);

@@ -5,7 +5,8 @@
 
 namespace pellucid {
 
-/// Whether a table absorbs anywhere along data that may be off by this, beside their rounding.
+/// Returns whether a table absorbs anywhere along data that may be off by this, beside their
+/// rounding.
 inline bool table_absorbs(const PiecewiseLinear<double>& table, const CubicBernstein<double>& data,
                           double off) noexcept {
   const double error = off + data_rounding(data);

@@ -9,8 +9,8 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// How far it is, world length, to where rays leave cells along an axis, all of it in the block;
-/// infinite where the cell is the last one on the way.
+/// Returns the world length until rays leave cells along an axis, all of it in the block; infinite
+/// where the cell is the last one on the way.
 template <int N>
 Batch<double, N> cell_exit(Batch<float, N> cell, Batch<float, N> end_cell, Batch<double, N> place,
                            Batch<double, N> inverse, BatchMask<N> forward) noexcept {
@@ -21,7 +21,7 @@ Batch<double, N> cell_exit(Batch<float, N> cell, Batch<float, N> end_cell, Batch
                 (plane - place) * inverse);
 }
 
-/// How far it is to where rays enter cells along an axis.
+/// Returns the world length until rays enter cells along an axis.
 template <int N>
 Batch<double, N> cell_entry(Batch<float, N> cell, Batch<double, N> place, Batch<double, N> inverse,
                             BatchMask<N> forward) noexcept {
@@ -83,7 +83,7 @@ class CellMarch {
     stretch = I(Stretches<N>::most);
   }
 
-  /// Whether enough lanes are free for walks that wait.
+  /// Returns whether enough lanes are free for walks that wait.
   bool wants(const All& walks) const noexcept {
     // Numbers are spread over lanes one by one where there is no instruction for it.
     constexpr int enough = N == 16 ? 2 : (N + 3) / 4;

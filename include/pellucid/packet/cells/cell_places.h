@@ -6,7 +6,7 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// How rays go through cells, one in each lane.
+/// Positions of rays in cells, one in each lane.
 template <int N>
 struct CellPlaces {
   Batch<std::int32_t, N> cell[3];      ///< in plane coordinates
@@ -15,8 +15,8 @@ struct CellPlaces {
   Batch<double, N> length;             ///< world length between them
 };
 
-/// Where CellMarch has the lanes' own rays go through a cell of a stretch. `in_block`: the cell, in
-/// its block.
+/// Returns the positions at which CellMarch has the lanes' own rays cross a cell of a stretch.
+/// `in_block`: the cell, in its block.
 template <int N>
 CellPlaces<N> cell_places(const PacketGrid& grid, const BlockMarch<N>& rays,
                           const Stretches<N>& stretches, Batch<std::int32_t, N> stretch,

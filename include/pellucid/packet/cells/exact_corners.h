@@ -34,7 +34,7 @@ class ExactCorners {
     }
   }
 
-  /// Of the values of one grid, x fastest.
+  /// Loads the corners from the values of one grid, x fastest.
   template <class Value>
   CellCorners<D> operator()(const Value* data) const noexcept {
     const Value* at[N];

@@ -40,12 +40,12 @@ class PacketIntegrator {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
-  /// What many packets have one after the other.
+  /// Workspace that many packets use one after the other.
   struct Room : SpanRoom<N> {
     StepLengths<N> step_lengths;
   };
 
-  /// Of rays first … first + count - 1 of the job, count <= N.
+  /// Prepares for rays first … first + count - 1 of the job, count <= N.
   PacketIntegrator(const PellucidPacketJob& job, const PacketGrid& grid, Room& room, int first,
                    int count) noexcept
       : job_(job),
@@ -133,11 +133,12 @@ class PacketIntegrator {
     }
   }
 
-  /// How narrow a part of a cell may get before it is handed back.
+  /// Least width of a part of a cell, below which it is handed back.
   static constexpr float narrowest = 1.0f / 16;
   static constexpr float narrowest_lit = 1.0f / 512;
   static constexpr int most_lit_pieces = 40;
-  /// Of the difference of two rules what counts as the standard deviation of the better one.
+  /// Fraction of the difference of two rules that counts as the standard deviation of the better
+  /// one.
   static constexpr float share_of_difference = 0.4f;
   /// After so many pieces and halvings what is left of a cell is handed back if it is not taken.
   static constexpr int most_pieces = 64;
@@ -184,7 +185,7 @@ class PacketIntegrator {
     constant_ += select(lanes & whole_block_, I(1), I(0));
   }
 
-  /// Where the lanes' rays go through the cells of these spans.
+  /// Returns the positions at which the lanes' rays cross the cells of these spans.
   CellPlaces<N> places_of(M lanes, I of) const noexcept {
     return span_places(grid_, blocks_, room_.stretches, lanes, of);
   }
@@ -460,7 +461,7 @@ class PacketIntegrator {
     handed_back_ = handed_back_ & !lanes;
   }
 
-  /// Of the rays, from this share of the lanes' cells on.
+  /// Returns the remaining lengths of the rays, from this share of the lanes' cells on.
   F left_behind(F from) const noexcept { return left_ - from * span_length_; }
 
   /// Lanes whose span is to be gone on with in double.

@@ -23,7 +23,7 @@ struct SpanRows {
   std::int32_t first[N][Stretches<N>::of_a_ray], end[N][Stretches<N>::of_a_ray];
 };
 
-/// What else is known of a span, in a whole number that a float holds exactly: the sum of these.
+/// Further facts of a span, in a whole number that a float holds exactly: the sum of these.
 struct SpanCode {
   static constexpr int cell[3] = {1, 8, 64};  ///< times its place in the block
   static constexpr int handed_back = 512;     ///< not for the packets' rule
@@ -91,9 +91,9 @@ class SpanFinder {
         });
   }
 
-  /// Whether blocks of one material are one span: that of any value in the block, so of the one at
-  /// its first corner, as binary32 has it. Not beside a jump, which may lie between a value and its
-  /// rounding, and not of types that binary32 rounds: the function may be steep there.
+  /// Returns whether blocks of one material are one span: that of any value in the block, so of the
+  /// one at its first corner, as binary32 has it. Not beside a jump, which may lie between a value
+  /// and its rounding, and not of types that binary32 rounds: the function may be steep there.
   template <class Value>
   M is_constant(M lanes, F value) const noexcept {
     constexpr bool exact = std::is_same_v<Value, float> || sizeof(Value) < sizeof(float);
@@ -104,7 +104,7 @@ class SpanFinder {
                     I(BinnedTransfer::one_jump));
   }
 
-  /// Whether there is anything left to be gone through.
+  /// Returns whether there is anything left to be gone through.
   [[gnu::flatten]] bool take(const Walks<N>& walks, All& stretches) noexcept {
     if (cells_.wants(walks)) {
       note(stretches);
@@ -203,8 +203,8 @@ class SpanFinder {
     cells_.skip(lanes, min(reach(rise, slope), reach(fall, -slope)));
   }
 
-  /// How far the data are from having moved by `gap` at least, where they move towards that at this
-  /// rate; 0 where it is not known, as of a cell without a length.
+  /// Returns a lower bound on the length in which the data move by `gap`, where they move towards
+  /// that at this rate; 0 where it is not known, as of a cell without a length.
   F distance_to(F gap, F towards, F slope_rounding) const noexcept {
     constexpr float u = rounding_unit<float>;
     const F size = abs(towards);

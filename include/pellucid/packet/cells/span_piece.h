@@ -73,7 +73,7 @@ in_float_t<F> kink_error(const BinnedTransfer& transfer, const mask_t<F>& /*lane
   return color_kink_error(transfer, lower, upper);
 }
 
-/// What is left of the spans that lanes work on: of a cell, the part [from, 1]. T: float or double.
+/// Remainders of the spans that lanes work on: of a cell, the part [from, 1]. T: float or double.
 template <class T, int N>
 struct SpanLanes {
   using F = Batch<T, N>;
@@ -124,8 +124,9 @@ F share_within(F reach, F rise) noexcept {
   return select(leaves, reach / select(leaves, rise, F(1)), F(1));
 }
 
-/// What jumps at the ends of its interval can move the mean extinction of a piece by, whose data
-/// are known to `value_error` (that of the corners' places included); lanes without any: 0.
+/// Returns a bound on how much jumps at the ends of its interval can move the mean extinction of a
+/// piece, whose data are known to `value_error` (that of the corners' places included); lanes
+/// without any: 0.
 ///
 /// Data within some δ of a jump may be on either side. Of a monotone piece that begins there, with
 /// the differences d of its coefficients, f(t) - f(0) >= d₀ (1 - (1 - t)³) >= d₀ t: that is a share

@@ -7,7 +7,7 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// Where the spans of packets are found, one packet after the other.
+/// Workspace in which the spans of packets are found, one packet after the other.
 template <int N>
 struct SpanRoom {
   Stretches<N> stretches;
@@ -15,8 +15,8 @@ struct SpanRoom {
   SpanRows<N> rows;
 };
 
-/// How far spans' ends of rays first … first + count - 1 may be from where they are thought to be:
-/// where a ray meets the planes is known to a few units of its arc length.
+/// Returns the errors of spans' ends of rays first … first + count - 1: the crossings of a ray and
+/// the planes are known to a few units of its arc length.
 template <int N>
 Batch<float, N> span_end_errors(const PellucidPacketJob& job, int first, int count) noexcept {
   float far[N];
@@ -27,7 +27,7 @@ Batch<float, N> span_end_errors(const PellucidPacketJob& job, int first, int cou
   return Batch<float, N>::load(far);
 }
 
-/// Where the lanes' own rays go through the cells of spans.
+/// Returns the positions at which the lanes' own rays cross the cells of spans.
 template <int N>
 CellPlaces<N> span_places(const PacketGrid& grid, const BlockMarch<N>& rays,
                           const Stretches<N>& stretches, BatchMask<N> lanes,

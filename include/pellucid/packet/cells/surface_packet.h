@@ -26,7 +26,7 @@ class SurfacePacket {
 
   using Room = SpanRoom<N>;
 
-  /// Of rays first … first + count - 1 of the job, count <= N.
+  /// Prepares for rays first … first + count - 1 of the job, count <= N.
   SurfacePacket(const PellucidPacketJob& job, const PacketGrid& grid, Room& room, int first,
                 int count) noexcept
       : job_(job),
@@ -75,7 +75,7 @@ class SurfacePacket {
   }
 
  private:
-  /// How many stretches of a ray are gone through at a time: behind an opaque surface all is
+  /// Number of stretches of a ray that are traversed at a time: behind an opaque surface all is
   /// wasted.
   static constexpr int stretches_ahead = 1;
   static constexpr float margin = SurfaceLanes<N>::margin;

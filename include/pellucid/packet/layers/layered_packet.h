@@ -704,7 +704,7 @@ class LayeredPacket {
   [[gnu::noinline]] Rgb<F> nodes_color(M lanes, F length) noexcept {
     return detail::panel_color(nodes<Nodes>(lanes, length));
   }
-  /// What all layers have at Nodes Gauss nodes of pieces.
+  /// Evaluates all layers at Nodes Gauss nodes of pieces.
   template <int Nodes>
   [[gnu::noinline]] detail::PanelNodes<Nodes, F> nodes(M lanes, F length) noexcept {
     return detail::PanelNodes<Nodes, F>(length, [&](F u) noexcept {

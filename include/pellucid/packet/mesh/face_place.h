@@ -7,7 +7,7 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// Where rays go through a face, for what is linear on it.
+/// Positions at which rays cross a face, for numbers that are linear on it.
 template <class S, int N>
 struct FacePlace {
   using T = Batch<S, N>;

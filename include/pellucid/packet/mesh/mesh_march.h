@@ -33,7 +33,7 @@ class MeshMarch {
 
   MeshRays<S, N> rays;
   M walking{false};  ///< whether a lane has tetrahedra ahead
-  /// How far off are places that no span makes good for, all in all: where vacuum begins and ends,
+  /// Total error of positions that no neighboring span compensates: where vacuum begins and ends,
   /// and where rounding has left a span no length.
   F beside_vacuum{0};
   /// And those of the mesh, where what was passed over may have absorbed something.
@@ -152,19 +152,19 @@ class MeshMarch {
     values_.see(point);
   }
 
-  /// What rounding to S takes from a parameter.
+  /// Returns the error of a parameter by rounding to S.
   static F rounded(const T& t) noexcept {
     return F(static_cast<float>(rounding_unit<S>)) * abs(convert<float>(t));
   }
 
-  /// How far off those ends of a span are that no neighbour makes good for.
+  /// Returns the error of those ends of a span that no neighbor compensates.
   F off_at_ends(const F& t_error) const noexcept {
     const M leaves = walk_.ahead() < I(0);
     return select(first_, t_error_, F(0)) + select(leaves, t_error, F(0));
   }
 
-  /// How far a parameter that is interpolated is off, beside what the weights are: those of the
-  /// points are rounded, and so is the result.
+  /// Returns the error of a parameter that is interpolated, besides that of the weights: those of
+  /// the points are rounded, and so is the result.
   F known_to(const T& t) const noexcept {
     return t_blur_ + F(static_cast<float>(2.1 * static_cast<double>(rounding_unit<S>))) *
                          abs(convert<float>(t));

@@ -30,7 +30,7 @@ class MeshPacket {
   using D = Batch<double, N>;
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
-  /// What many packets have one after the other.
+  /// Workspace that many packets use one after the other.
   using Room = typename MeshVariable<S, N>::Rows;
 
   MeshPacket(const PellucidMeshJob& job, Room& rows, int first, int count) noexcept
@@ -119,12 +119,12 @@ class MeshPacket {
     spans_.put_down(found, s);
   }
 
-  /// As in PacketIntegrator.
+  /// Limit as in PacketIntegrator.
   static constexpr float narrowest = 1.0f / 16;
-  /// How far ends may be elsewhere, in optical depth.
+  /// Largest shift of ends, in optical depth.
   static constexpr float farthest = 1.0f / 8;
-  /// What a piece may take of all that is left of the budget for rounding, which shorter pieces
-  /// have as well, and so has binary64 where what it is handed is known to binary32 only.
+  /// Fraction of the remaining budget that a piece may take for rounding, which shorter pieces have
+  /// as well, and so has binary64 where what it is handed is known to binary32 only.
   static constexpr float for_rounding = Room::more_exact ? 0.0f : 0.25f;
 
   M absorbs(F least, F most, I& note) const noexcept {
@@ -165,7 +165,7 @@ class MeshPacket {
 
   // A piece of each lane that has a span, in parts.
 
-  /// Where it ends, and the color there.
+  /// Finds the end of the piece, and the color there.
   [[gnu::flatten]] void find_end() noexcept {
     if (any(handed_back_)) {
       hand_back(handed_back_);

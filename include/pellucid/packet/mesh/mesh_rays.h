@@ -19,12 +19,12 @@ class MeshRays {
   using F = Batch<float, N>;
   using M = BatchMask<N>;
 
-  /// Where a ray goes through the boundary.
+  /// Crossing of a ray and the boundary.
   struct Hit {
     S t;
     std::int32_t code;
   };
-  /// Of one ray; those with more are not for lanes.
+  /// Largest number of hits of one ray; rays with more are not for lanes.
   static constexpr int most_hits = 48;
 
   MeshRays(const PellucidMeshJob& job, int first, int count) noexcept

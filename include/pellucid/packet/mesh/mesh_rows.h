@@ -6,7 +6,7 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// What is known of a span of a row beside its numbers.
+/// Flags of a span of a row.
 struct SpanNote {
   static constexpr std::int32_t handed_back = 1, overlaps = 2;
 };

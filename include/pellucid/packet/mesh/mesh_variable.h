@@ -42,13 +42,13 @@ class MeshVariable {
     [[no_unique_address]] std::conditional_t<more_exact, Exact, Nothing> exact;
   };
 
-  /// Whether spans that are taken for clear may absorb something all the same.
+  /// True if spans that are taken for clear may absorb something all the same.
   static constexpr bool passes_over_light = false;
 
   explicit MeshVariable(const PellucidMeshJob& job) noexcept
       : field_(seen(job.fields)->channel[0]) {}
 
-  /// Whether the data step from tetrahedron to tetrahedron.
+  /// Returns whether the data step from tetrahedron to tetrahedron.
   bool steps() const noexcept { return field_.per_cell; }
 
   /// A span: the data at its ends.
@@ -78,7 +78,7 @@ class MeshVariable {
     value_ = select(on, value, value_);
     error_ = select(on, error, error_);
   }
-  /// What they see of the tetrahedron in front of it.
+  /// Returns the span of the tetrahedron in front of the face.
   Span reach(const SeenFace<T>& face, const FacePlace<S, N>& place, I tetrahedron) noexcept {
     if (field_.per_cell) {
       const T value = load_values<S>(field_.value, tetrahedron);

@@ -29,7 +29,7 @@ class MeshVariables {
     }
   }
 
-  /// Whether data step from tetrahedron to tetrahedron.
+  /// Returns whether data step from tetrahedron to tetrahedron.
   bool steps() const noexcept { return steps_; }
 
   /// A span: the data at its ends, and how far they may be off, beside the rounding of what they
@@ -65,7 +65,7 @@ class MeshVariables {
       error_[c] = select(on, error, error_[c]);
     }
   }
-  /// What they see of the tetrahedron in front of it.
+  /// Returns the span of the tetrahedron in front of the face.
   Span& reach(const SeenFace<T>& /*face*/, const FacePlace<double, N>& place,
               I tetrahedron) noexcept {
     Span& span = span_;

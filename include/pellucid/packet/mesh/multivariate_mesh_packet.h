@@ -84,9 +84,9 @@ class MultivariateMeshPacket {
                                int at, I& /*note*/) noexcept { return matters(span, rows, at); }));
   }
 
-  /// Whether anything of the spans may be seen; where |p|² >= square - less a primitive has
-  /// e^less times what is negligible, at most. As much as the primitives that are passed over may
-  /// have, errors of the data may change where all are.
+  /// Returns the lanes in which anything of the spans may be seen; where |p|² >= square - less a
+  /// primitive has e^less times what is negligible, at most. As much as the primitives that are
+  /// passed over may have, errors of the data may change where all are.
   [[gnu::flatten]] M matters(const typename Variables::Span& span, typename Variables::Rows& rows,
                              int at) noexcept {
     LinearBernstein<F> data[max_channels];
@@ -114,7 +114,7 @@ class MultivariateMeshPacket {
     return found;
   }
 
-  /// Whether tables absorb, lane by lane; and how far errors of the data change that.
+  /// Returns the lanes in which tables absorb; and how far errors of the data change that.
   M tables_matter(const typename Variables::Span& span, F& changed) const noexcept {
     double front[max_channels][N], back[max_channels][N];
     float error[max_channels][N], of_lane[N];

@@ -22,7 +22,7 @@ class MultivariateSampler {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
-  /// Of rays first … first + count - 1 of the job, count <= N.
+  /// Prepares for rays first … first + count - 1 of the job, count <= N.
   MultivariateSampler(const PellucidMultivariateSamplerJob& job, const PacketGrid& grid, int first,
                       int count) noexcept
       : fields_(*seen(job.grid)),
@@ -110,7 +110,8 @@ class MultivariateSampler {
     }
   }
 
-  /// Those of the blocks in which the next steps' middles lie, the first of which is at `middle`.
+  /// Finds the primitives of the blocks in which the next steps' middles lie, the first of which is
+  /// at `middle`.
   template <int K>
   PELLUCID_ALWAYS_INLINE void find_primitives(D middle, PrimitiveSet* set) const noexcept {
     const I from = steps_.block_at(middle);

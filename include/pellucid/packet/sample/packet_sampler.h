@@ -23,7 +23,7 @@ class PacketSampler {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
-  /// Of rays first … first + count - 1 of the job, count <= N.
+  /// Prepares for rays first … first + count - 1 of the job, count <= N.
   PacketSampler(const PellucidSamplerJob& job, const PacketGrid& grid, int first,
                 int count) noexcept
       : transfer_(*seen(job.transfer)),

@@ -16,7 +16,7 @@ class SampleLight {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
-  /// What a point makes of an extinction and of a color.
+  /// Factors of an extinction and of a color at a point.
   struct AtPoint {
     F factor;
     Lit<F> lit;

@@ -23,8 +23,8 @@ struct SampledMultivariate {
 };
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
-/// What the primitives of a set and all tables make of data that are no NaN, in the lanes of
-/// `wanted`; in others anything.
+/// Returns extinction and source of the primitives of a set and of all tables for data that are no
+/// NaN, in the lanes of `wanted`; in others anything.
 template <int N>
 PELLUCID_ALWAYS_INLINE StepEnd<Batch<float, N>> extinction_and_emission(
     const SampledMultivariate& t, PrimitiveSet set, BatchMask<N> wanted,

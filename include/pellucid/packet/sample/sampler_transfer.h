@@ -54,9 +54,9 @@ Material<Batch<float, N>> material_on_lines(const SamplerTransfer& t, Batch<std:
 
 }  // namespace detail
 
-/// Of the control points between two values the sum of squares of SamplerTransfer::corners: where
-/// there are few, and a bin beside; else and up to two bins beside, with 2^-44 of that of all
-/// points below, for what their sum has lost.
+/// Returns the sum of squares of SamplerTransfer::corners over the control points between two
+/// values: where there are few, and a bin beside; else and up to two bins beside, with 2^-44 of
+/// that of all points below, for what their sum has lost.
 template <int N>
 Batch<float, N> corners_between(const SamplerTransfer& t, Batch<float, N> least,
                                 Batch<float, N> most) noexcept {

@@ -218,8 +218,9 @@ class GaussianMarch {
   static constexpr float shortest_step = 0x1p-13f;
   /// Cells: what sample_places.h says of so short ways, as a standard deviation at most.
   static constexpr float position_error = 1e-6f;
-  /// Of what Simpson's rule errs on four steps over a Gaussian at most, which is 0.27 times the
-  /// fourth power of how far it moves in one, what counts as the least standard deviation.
+  /// Fraction that counts as the least standard deviation, of the largest error of Simpson's rule
+  /// on four steps over a Gaussian, which is 0.27 times the fourth power of how far it moves in
+  /// one.
   static constexpr float least_share = 0.01f;
 
   void find_front() noexcept {
@@ -245,7 +246,7 @@ class GaussianMarch {
     }
   }
 
-  /// What the blocks know: how the data vary around where the lanes stand, and which primitives may
+  /// Looks up in the blocks how the data vary around the lanes' positions, and which primitives may
   /// matter on the way.
   PELLUCID_ALWAYS_INLINE void look_at_blocks(const D* place, F length) noexcept {
     F from[3];

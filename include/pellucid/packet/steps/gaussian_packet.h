@@ -51,8 +51,8 @@ class GaussianPacket {
  private:
   using March = GaussianMarch<N>;
 
-  /// Of the difference of two rules what counts as the standard deviation of the better one: more
-  /// than in smooth stretches, for all of a narrow primitive may lie in a few steps.
+  /// Fraction of the difference of two rules that counts as the standard deviation of the better
+  /// one: more than in smooth stretches, for all of a narrow primitive may lie in a few steps.
   static constexpr float share_of_difference = 0.8f;
   /// Rays that need more are given up: PacketFold keeps back what so many cost.
   static constexpr int most_looks = 1 << 14;
@@ -78,7 +78,7 @@ class GaussianPacket {
     return true;
   }
 
-  /// What the rays of these lanes have gathered.
+  /// Stores the results of the rays of these lanes.
   void store(M lanes) noexcept {
     const SegmentResult<D> all = fold_.result();
     const D error = fold_.error(convert<double>(segments_)) +

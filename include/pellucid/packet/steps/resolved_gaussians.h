@@ -25,11 +25,11 @@ struct SteppedMixture {
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 
-/// How the channels vary on the way of each lane: bounds for four steps from where it stands, or
-/// for any one of them.
+/// Variation of the channels on the way of each lane: bounds for four steps from where it stands,
+/// or for any one of them.
 template <int N>
 struct LocalVariation {
-  /// How much the derivative along the ray varies in a step, per world length.
+  /// Variation of the derivative along the ray in a step, per world length.
   Batch<float, N> oscillation[max_channels];
   /// The largest jump of the derivative by each axis's grid coordinate.
   Batch<float, N> bend[max_channels][3];
@@ -47,7 +47,7 @@ class LanePrimitives {
   PELLUCID_ALWAYS_INLINE void add(int lane, PrimitiveSet set) noexcept {
     of_lane_[lane].bits |= set.bits;
   }
-  /// Of these lanes, behind all that is added.
+  /// Finishes these lanes, after all additions.
   void finish(M lanes) noexcept {
     any_.bits = 0;
     all_.bits = ~0ULL;
@@ -73,7 +73,7 @@ class LanePrimitives {
   PrimitiveSet of_lane_[N], any_, all_;
 };
 
-/// What a sum of Gaussians is at the five ends of four steps of one length, and whether the steps
+/// Values of a sum of Gaussians at the five ends of four steps of one length, and whether the steps
 /// resolve it: no primitive comes and goes between two ends unseen, and none changes much from one
 /// to the next.
 ///
@@ -100,7 +100,7 @@ class ResolvedGaussians {
   F bending[3];  ///< what a bend of the data along an axis makes of the extinction, by its largest
                  ///<   deviation from the curve, in cells squared (error/random_errors.h)
 
-  /// What the step should be, by what it is, for what is unresolved to be resolved.
+  /// Return the factor of the step that resolves everything: finer() at most 1, longer() any.
   F finer() const noexcept { return min(longer(), F(1)); }
   F longer() const noexcept { return F(0.8f * coarsest) / max(most, F(1e-30f)); }
   /// The share of step j, from its front on, on which none matters of those that do on it.
@@ -205,7 +205,8 @@ class ResolvedGaussians {
     }
   }
 
-  /// How far p moves where channel c moves by at most change(c) >= 0: row by row.
+  /// Returns a bound on how far p moves where channel c moves by at most change(c) >= 0: row by
+  /// row.
   template <class Change>
   PELLUCID_ALWAYS_INLINE static F moved_at_most(const SteppedGaussian& of,
                                                 Change&& change) noexcept {

@@ -201,8 +201,8 @@ class SmoothMarch {
   static constexpr int choices = 5;
   /// The optical depth of a step at most: the rule goes by what is small against 1.
   static constexpr float deepest = 1;
-  /// Of a corner, as uncorrelated_error_mean_square() of many; doubled, for `fastest` is a mean
-  /// over a step.
+  /// Mean square error of a breakpoint, as uncorrelated_error_mean_square() of many; doubled, for
+  /// `fastest` is a mean over a step.
   static constexpr float corner = 2 * uncorrelated_error_limit;
   /// simpson_error_mean_square() above which steps are in step with the cells, and by how much
   /// shorter ones are taken then.
@@ -289,7 +289,7 @@ class SmoothMarch {
     return largest > 0 ? largest * largest : 1;
   }
 
-  /// Of the blocks that the steps are in: least_variance; and whether the steps are short enough,
+  /// Reads from the blocks of the steps least_variance, and whether the steps are short enough,
   /// with those of the level before being so, too.
   void look_at_blocks(const F* weight, F step, Steps& s) const noexcept {
     // The block in the middle of the steps, whose neighbours hold the others.
