@@ -16,9 +16,9 @@ namespace pellucid {
 /// are the central differences.
 class AxisDifferences {
  public:
-  /// How the derivatives follow from the three values v. Steps and not values are weighted, so that
-  /// a constant has a derivative of exactly 0. A NaN is in every result that its value belongs to,
-  /// also with a weight of 0.
+  /// Weights by which the derivatives follow from the three values v. Steps and not values are
+  /// weighted, so that a constant has a derivative of exactly 0. A NaN is in every result that its
+  /// value belongs to, also with a weight of 0.
   struct Stencil {
     std::array<int, 3> at{};  ///< indices along the axis
     int middle = 0;           ///< which of the three is the value itself

@@ -79,7 +79,7 @@ bool by_fields(const std::vector<float>& records, float (&fields)[Fields][Few]) 
   return true;
 }
 
-/// Whether anything absorbs in the table's own interval between points i - 1 and i.
+/// Returns whether anything absorbs in the table's own interval between points i - 1 and i.
 bool absorbs(const PiecewiseLinear<double>& table, int i) {
   return table.material[i - 1].extinction > 0 || table.material[i].extinction > 0;
 }

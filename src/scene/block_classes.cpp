@@ -16,7 +16,7 @@
 namespace pellucid {
 namespace {
 
-/// What a transfer function does between any two codes, each in two look-ups. Exact: where it is
+/// Summary of a transfer function between any two codes, each in two look-ups. Exact: where it is
 /// said to be zero or constant it is so at every value of the closed range, and the other way
 /// round.
 class CodeTable {
@@ -46,12 +46,12 @@ class CodeTable {
     }
   }
 
-  /// Whether nothing absorbs at any value from that of code `lower` to that of `upper`.
+  /// Returns whether nothing absorbs at any value from that of code `lower` to that of `upper`.
   bool is_clear(int lower, int upper) const noexcept {
     const Span s = span(lower, upper);
     return sums_[s.last].absorbing == (s.first == 0 ? 0 : sums_[s.first - 1].absorbing);
   }
-  /// Whether all of these values absorb; of a jump at `lower` what is above it.
+  /// Returns whether all of these values absorb; of a jump at `lower` what is above it.
   bool absorbs_throughout(int lower, int upper) const noexcept {
     const Place &p = at_[static_cast<std::size_t>(lower)],
                 &q = at_[static_cast<std::size_t>(upper)];
@@ -65,15 +65,14 @@ class CodeTable {
     const Span s = span(lower, upper);
     return sums_[s.last].changes == sums_[s.first].changes;
   }
-  /// Whether the extinction, or a color that is seen, jumps at any of these values.
+  /// Returns whether the extinction, or a color that is seen, jumps at any of these values.
   bool has_jump(int lower, int upper) const noexcept {
     const Span s = span(lower, upper);
     return sums_[s.last].jumps != sums_[s.first].jumps;
   }
 
  private:
-  /// How many control points lie below the value of a code, how many do not lie above it, and
-  /// whether it absorbs.
+  /// Numbers of control points below the value of a code and not above it, and whether it absorbs.
   struct Place {
     int below, up_to;
     bool absorbs;

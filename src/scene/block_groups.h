@@ -17,7 +17,7 @@ class BlockGroups {
       : records_(&records),
         blocks_{records.axis[0].cells(), records.axis[1].cells(), records.axis[2].cells()} {}
 
-  /// Of groups, one behind the other along z.
+  /// Returns the number of slabs of groups, one behind the other along z.
   int slabs() const noexcept { return groups(2); }
 
   class Group {
@@ -62,7 +62,7 @@ class BlockGroups {
   std::array<int, 3> blocks_;
 };
 
-/// How the data of several blocks vary, together.
+/// Variation of the data of several blocks together.
 struct GroupVariation {
   /// A derivative has to swing by that many times of what it changes in one cell: so it does in
   /// waves of nine cells, for which it takes π of them along a third of the wave.
@@ -83,8 +83,8 @@ struct GroupVariation {
     return static_cast<double>(std::max({bend[0], bend[1], bend[2], twist[0], twist[1], twist[2]}));
   }
 
-  /// How many cells the derivative takes to swing from one end of its range to the other, the least
-  /// of the axes.
+  /// Returns the number of cells in which the derivative swings from one end of its range to the
+  /// other, the least of the axes.
   double steps() const noexcept {
     // An axis along which the data hardly bend, compared with others, is not looked at: what is
     // there may be rounding.

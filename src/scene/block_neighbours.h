@@ -10,8 +10,8 @@
 
 namespace pellucid {
 
-/// Of each block and those that touch it what join(all, other) makes of their records, `fields` of
-/// each block, one behind the other, field by field. Along one axis after the other, in place.
+/// Joins the records of each block and of those that touch it by join(all, other), `fields` of each
+/// block, one behind the other, field by field. Along one axis after the other, in place.
 template <class Record, class Join>
 void join_with_neighbours(const BlockRecords& blocks, const ParallelFor& parallel,
                           std::size_t fields, std::vector<Record>& records, const Join& join) {

@@ -36,11 +36,11 @@ class BlockRoughness {
   /// Extinction and the channels of the color.
   static constexpr std::size_t curves = 4;
 
-  /// Of the curves in a bin; `variation` is the total one.
+  /// Slopes of the curves in a bin; `variation` is the total one.
   struct Slopes {
     std::array<double, curves> first{}, last{}, variation{};
   };
-  /// What bounds need of a transfer function over a range (RangeSummary), rounded outward.
+  /// Bounds of a transfer function over a range (RangeSummary), rounded outward.
   struct Bin {
     float slope = 0, color_slope = 0;
     float color_min[3], color_max[3];
@@ -48,15 +48,15 @@ class BlockRoughness {
     float slope_min[curves], slope_max[curves];  ///< of each curve
     void merge(const Bin& other) noexcept;
     double range(std::size_t curve) const noexcept;
-    /// What a change of a curve's slope makes of a sample's error, at most.
+    /// Returns the largest error of a sample per change of a curve's slope.
     double weight(std::size_t curve, double largest_color) const noexcept;
   };
   Bin make_bin(int bin, const TransferTables& transfer, Slopes& slopes) const;
   void find_slopes(const PiecewiseLinear<double>& table, double lower, double upper, Bin& bin,
                    Slopes& slopes) const;
   Bin over(std::size_t first, std::size_t count) const noexcept;
-  /// What the slopes of a curve go to and fro over `count` bins from `first` on, whose range is
-  /// `range`.
+  /// Returns the variation of a curve's slopes, there and back, over `count` bins from `first` on,
+  /// whose range is `range`.
   double to_and_fro(std::size_t first, std::size_t count, std::size_t curve,
                     double range) const noexcept;
 

@@ -26,7 +26,7 @@ struct Candidates {
     sampled.steps = std::min(sampled.steps, its.steps);
   }
 
-  /// Of roughness times how much the data bend over a cell.
+  /// Returns the largest product of roughness and second difference.
   double max_second_difference() const noexcept {
     return static_cast<double>(sampled.roughness) *
            static_cast<double>(std::max({data.bend[0], data.bend[1], data.bend[2]}));

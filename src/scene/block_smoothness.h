@@ -8,7 +8,7 @@
 
 namespace pellucid {
 
-/// What there is to know of the transfer function over the range of a block, if it may be sampled.
+/// Facts of the transfer function over the range of a block, if it may be sampled.
 struct SampledBlock {
   float roughness = -1;  ///< SmoothBlocks::roughness; negative: it may not
   float steps = std::numeric_limits<float>::infinity();  ///< BlockRoughness::Range

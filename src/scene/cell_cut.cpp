@@ -14,7 +14,7 @@
 namespace pellucid {
 namespace {
 
-/// Where a part of the cells begins in the grid's lists (CellWalk::places) and in the cut's.
+/// Beginning of a part of the cells in the grid's lists (CellWalk::places) and in the cut's.
 struct Part {
   std::array<std::size_t, 3> places{};
   std::size_t lacking = 0, tetrahedron = 0;

@@ -13,7 +13,7 @@
 namespace pellucid {
 namespace {
 
-/// How far K (v - c) may move from ray to ray: the top of a Gaussian that lies between two of them
+/// Largest change of K (v - c) from ray to ray: the top of a Gaussian that lies between two of them
 /// is seen by both.
 constexpr double most_moved = 1.6;
 /// Likewise where the data turn back at a distance u of K (v - c), in the Gaussian's tail: with its
@@ -25,7 +25,7 @@ constexpr double most_turned = 1.6;
 /// data do that are rounded.
 constexpr double least_turned = 2e-5;
 
-/// What the data of a channel do in its blocks, by the place in cells.
+/// Variation of the data of a channel in its blocks, by the position in cells.
 class ChannelMovement {
  public:
   explicit ChannelMovement(const BlockRecords& records) : records_(records) {}
@@ -92,7 +92,7 @@ class ChannelMovement {
   const BlockRecords& records_;
 };
 
-/// How far K (v - c) moves where channel c moves by by_channel[c].
+/// Returns the distance that K (v - c) moves where channel c moves by by_channel[c].
 double moved(const Gaussian<double>& g, const double* by_channel) noexcept {
   double square = 0;
   for (int r = 0; r < g.rows; ++r) {
@@ -168,7 +168,7 @@ class SmoothnessOfChannels {
     std::array<double, max_channels> at{};  ///< the lengths of K's columns
   };
 
-  /// How far apart rays may be for what the block's primitives make of the data, cells.
+  /// Returns the largest distance of rays that resolves the block's primitives, in cells.
   double resolving_steps(int block) const noexcept {
     double slope[max_channels] = {}, turn[max_channels] = {};
     for (std::size_t c = 0; c < records_.size(); ++c) {

@@ -23,7 +23,7 @@ std::string dimensions(const Volume& volume) {
   return std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]);
 }
 
-/// How far the corners of the two grids are apart at most, in voxels of the first.
+/// Returns the largest distance of the two grids' corners, in voxels of the first.
 double displacement(const Volume& a, const Volume& b) {
   double largest = 0;
   const auto p = a.world_corners(), q = b.world_corners();

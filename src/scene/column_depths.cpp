@@ -10,7 +10,7 @@
 namespace pellucid {
 namespace {
 
-/// Of a line.
+/// Largest number of points of a line.
 constexpr int most_points = 256;
 
 std::size_t middle_of(int i, int parts, int n) {

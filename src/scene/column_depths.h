@@ -10,7 +10,7 @@
 
 namespace pellucid {
 
-/// What lines along the axes of the grid meet of something whose density in [0, 1] is known.
+/// Depth of something whose density in [0, 1] is known, along lines along the axes of the grid.
 struct ColumnDepth {
   /// Length of full density along a line that meets it: the mean over the lines, each weighted by
   /// its own. World length.

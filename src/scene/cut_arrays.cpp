@@ -13,7 +13,7 @@
 namespace pellucid {
 namespace {
 
-/// What holds combinations of values: of numbers of 16 bits float does, exactly.
+/// Type that holds combinations of values: of numbers of 16 bits float does, exactly.
 template <class Value>
 using Combined =
     std::conditional_t<std::is_same_v<Value, float> || sizeof(Value) <= 2, float, double>;

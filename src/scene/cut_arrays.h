@@ -15,7 +15,7 @@ VolumeData carried(const UnstructuredGrid& grid, const MeshArray& array, const C
 /// there is none, or it has no such component.
 const MeshArray& chosen_array(const UnstructuredGrid& grid, const MeshArrayChoice& choice);
 
-/// What was chosen of the array, at the points or the tetrahedra of the cut.
+/// Returns the chosen part of the array, at the points or the tetrahedra of the cut.
 MeshChannel chosen_channel(const UnstructuredGrid& grid, const MeshArrayChoice& choice,
                            const CellCut& cut);
 

@@ -10,7 +10,8 @@
 namespace pellucid {
 namespace {
 
-/// Those of the file, or as they stand: a cell that is left without a tetrahedron counts too.
+/// Returns the cell numbers of the file, or those by order: a cell without a tetrahedron counts
+/// too.
 std::vector<std::int32_t> cell_numbers(const UnstructuredGrid& grid) {
   if (!grid.cell_numbers.empty()) return grid.cell_numbers;
   std::vector<std::int32_t> numbers(grid.shapes.size());

@@ -20,7 +20,7 @@ std::vector<T> taken(const std::vector<T>& from, const std::vector<std::int32_t>
   return to;
 }
 
-/// Of the points that tetrahedra have.
+/// Returns the box of the points that tetrahedra have.
 Box<double> box_of(const CellCut& cut) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Box<double> box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};

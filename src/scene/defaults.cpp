@@ -75,7 +75,7 @@ TransferFunction grey_ramp(const VolumeStatistics& data, LayerProjection project
   return TransferFunction({{lower, 1, black}, {upper, 1, white}});
 }
 
-/// Of a volume or a mesh.
+/// Returns a transparent ramp over the range of a volume or a mesh.
 template <class Data>
 TransferFunction transparent_ramp(const Data& data) {
   std::vector<TransferFunction::Point> points =

@@ -39,7 +39,7 @@ class DerivedVolume {
 
   /// Row j + n[1] · k.
   std::span<float> row(std::size_t r) const noexcept { return out_.subspan(r * width_, width_); }
-  /// Where a result cannot be held: beyond() is true from then on.
+  /// Rounds a result to float. beyond() is true from then on if a volume cannot hold it.
   float held(double result) noexcept {
     if (!(std::abs(result) > largest_value)) return static_cast<float>(result);
     beyond_.store(true, std::memory_order_relaxed);
@@ -81,7 +81,7 @@ class DerivedVolume {
   std::atomic<bool> beyond_{false};
 };
 
-/// What messages call a volume.
+/// Returns the name of a volume in messages.
 inline std::string volume_name(const Volume& volume) {
   const std::string& name = volume.description().name;
   return name.empty() ? "volume" : name;

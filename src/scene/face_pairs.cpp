@@ -15,7 +15,7 @@ struct Face {
   std::int32_t code;     ///< 4 · tetrahedron + face
 };
 
-/// Where the smallest point of a face stands, and the two others.
+/// Corners of each face: that of the smallest point, and the two others.
 constexpr std::array<std::array<int, 3>, 4> corners_of_face{
     {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
 

@@ -34,7 +34,7 @@ bool is_nan(Value value) {
 template <class Value>
 class DistinctValues {
  public:
-  /// Whether the values may still be labels.
+  /// Returns whether the values may still be labels.
   bool add(std::span<const Value> values) {
     for (const Value value : values) {
       if (!list_.empty() && value == last_) continue;
@@ -90,8 +90,8 @@ class NeighbourCounts {
   }
 
  private:
-  /// Of the different values, those that fill regions: most neighbours of such a value are equal to
-  /// it. A blurred edge between two regions has many values that do not.
+  /// Returns the number of different values that fill regions: most neighbours of such a value are
+  /// equal to it. A blurred edge between two regions has many values that do not.
   double filled_values() const {
     constexpr double least = 0.55;
     double filled = 0;

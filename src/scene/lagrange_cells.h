@@ -18,7 +18,7 @@
 
 namespace pellucid {
 
-/// Where the nodes of one kind of Lagrange cell stand in its list of points: VTK's order.
+/// Positions of the nodes of one kind of Lagrange cell in its list of points: VTK's order.
 class LagrangeNodes {
  public:
   /// `layout`: as UnstructuredGrid::layouts, checked.
@@ -30,7 +30,8 @@ class LagrangeNodes {
     return nodes_[static_cast<std::size_t>(i + side_[0] * (j + side_[1] * k))];
   }
   int order(int axis) const noexcept { return side_[axis] - 1; }
-  /// Whether triangles and the cell have a node in their middle beside those of the lattice.
+  /// Returns whether triangles and the cell have a node in their middle beside those of the
+  /// lattice.
   bool has_middles() const noexcept { return has_middles_; }
 
  private:
@@ -44,7 +45,7 @@ class LagrangeTables {
  public:
   LagrangeTables() = default;
   explicit LagrangeTables(const UnstructuredGrid& grid);
-  /// Of a cell of the grid.
+  /// Returns the nodes of a cell of the grid.
   const LagrangeNodes& of(const GridCell& cell) const { return tables_.find(key(cell))->second; }
 
  private:

@@ -301,8 +301,8 @@ std::array<Vec3<double>, 8> world_corners(const Layer& layer) noexcept {
 
 namespace {
 
-/// Whether a function of the layer absorbs at some value from `lower` to `upper`, or an isosurface
-/// has one.
+/// Returns whether a function of the layer absorbs at some value from `lower` to `upper`, or an
+/// isosurface has one.
 bool absorbs_between(const Layer& layer, double lower, double upper) {
   bool absorbs = std::ranges::any_of(layer.isosurfaces, [&](const Isosurface& surface) {
     return lower <= surface.value && surface.value <= upper;

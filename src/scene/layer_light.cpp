@@ -134,7 +134,7 @@ class LightCheck {
   int channels_;
 };
 
-/// What light multiplies colors by, and adds, at most.
+/// Largest factor of colors in light, and largest addition to them.
 struct MostLight {
   Rgb<double> factor{1, 1, 1}, added{};
 

@@ -16,7 +16,7 @@
 
 namespace pellucid {
 
-/// Whether a quadrilateral's diagonal runs from its first to its third point.
+/// Returns whether a quadrilateral's diagonal runs from its first to its third point.
 inline bool cut_from_first(std::int32_t a, std::int32_t b, std::int32_t c,
                            std::int32_t d) noexcept {
   return std::min(a, c) < std::min(b, d);

@@ -39,7 +39,7 @@ constexpr std::array<LookName, 11> all_looks{
 constexpr std::array<LookName, 3> mesh_looks{
     {{"body", "meshes: the values on and below the surface"}, haze, x_ray}};
 
-/// Whether a name ends in one of these, whatever its case.
+/// Returns whether a name ends in one of these, whatever its case.
 bool ends_in(const std::string& name, std::initializer_list<std::string_view> endings) {
   std::string lower = name;
   std::ranges::transform(lower, lower.begin(),
@@ -47,7 +47,7 @@ bool ends_in(const std::string& name, std::initializer_list<std::string_view> en
   return std::ranges::any_of(endings, [&](std::string_view e) { return lower.ends_with(e); });
 }
 
-/// What a folder holds by the names in it: images, or else a DICOM series. Of a file: nothing.
+/// Contents of a folder by the names in it: images, or else a DICOM series. Of a file: none.
 enum class FolderKind { none, images, series };
 FolderKind folder_kind(const std::string& name) {
   std::error_code error;
@@ -95,7 +95,7 @@ std::optional<double> air_of(const std::vector<double>& v, const VolumeStatistic
                                                                    : std::nullopt;
 }
 
-/// Whether neighbors differ less by noise than by what the data are.
+/// Returns whether neighbors differ less by noise than by what the data are.
 bool is_smooth(const Volume& volume, const ClassedValues& of) {
   if (!of.differ) return true;
   const double threshold = of.threshold();

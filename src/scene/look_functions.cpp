@@ -273,7 +273,7 @@ Look mask_look(double lower, double upper) {
 
 namespace {
 
-/// Whether a mesh is a box of little but background, as a domain of simulation is.
+/// Returns whether a mesh is a box of little but background, as a domain of simulation is.
 bool is_mostly_background(const LookedAt& data) {
   const auto all = static_cast<double>(data.values.values.size());
   return data.filled > 0.9 && static_cast<double>(data.values.classes.foreground) > 0.8 * all;

@@ -6,7 +6,7 @@
 
 namespace pellucid {
 
-/// What looks are made of.
+/// Data from which looks are made.
 struct LookedAt {
   ClassedValues values;
   double chord;        ///< mean, of the data's box
@@ -14,7 +14,8 @@ struct LookedAt {
   bool whole_numbers;  ///< of the values' type
 };
 
-/// Whether the values are around 0, and whether most are near it: most of the data are background.
+/// Return whether the values are around 0, and whether most are near it: most of the data are
+/// background.
 bool is_around_zero(const ClassedValues& of);
 bool is_mostly_near_zero(const ClassedValues& of);
 

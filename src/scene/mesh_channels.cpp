@@ -43,7 +43,8 @@ VolumeScan scan_used(std::span<const Value> values, const std::vector<std::uint8
   return scan(std::span<const Value>(kept));
 }
 
-/// Where the first value is that is used and that cannot be shown, by the numbers of points.
+/// Returns the position of the first value that is used and cannot be shown, by the numbers of
+/// points.
 template <class Value>
 std::string first_beyond(const TetrahedralMesh& mesh, std::span<const Value> values,
                          const std::vector<std::uint8_t>& used, bool points, bool infinite) {

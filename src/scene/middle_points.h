@@ -26,8 +26,8 @@ struct MiddleNode {
 /// shapes.
 std::span<const MiddleNode> lacking_nodes(CellShape shape) noexcept;
 
-/// How many points beside its own a cell of this shape is cut with: those nodes; of a polyhedron
-/// the one that its tetrahedra meet in.
+/// Returns the number of points beside its own with which a cell of this shape is cut: those nodes;
+/// of a polyhedron the one that its tetrahedra meet in.
 std::size_t lacking_count(CellShape shape) noexcept;
 
 /// A new point: a middle node of a cell, or the mean of the points of a polyhedron.
@@ -37,7 +37,7 @@ struct MiddlePoint {
   const std::int32_t* cell = nullptr;
   std::int32_t count = 0;
 
-  /// What the shape functions, or the mean, make of the numbers that value(point) gives.
+  /// Interpolates the numbers that value(point) gives by the shape functions, or takes their mean.
   template <class Value>
   double interpolated(const Value& value) const {
     double sum = 0;
@@ -59,17 +59,17 @@ struct MiddlePoint {
 struct MiddlePoints {
   /// In the order of their indices, which follow those of the grid's points.
   std::vector<MiddlePoint> points;
-  /// What the cells lack, one cell after the other (lacking_count): indices of points.
+  /// Points that the cells lack, one cell after the other (lacking_count): indices of points.
   std::vector<std::int32_t> indices;
   /// The points of polyhedra, each once.
   std::vector<std::int32_t> distinct{};
 };
 
-/// Where a new point stands.
+/// Returns the position of a new point.
 Vec3<double> place_of(const UnstructuredGrid& grid, const MiddlePoint& point);
 
-/// Of a grid that agrees with itself. Throws Error where the points are more than an index can
-/// count.
+/// Finds the points that the cells of a consistent grid lack. Throws Error where the points are
+/// more than an index can count.
 MiddlePoints find_middle_points(const UnstructuredGrid& grid);
 
 }  // namespace pellucid

@@ -46,16 +46,16 @@ class OpacityStretch {
             mix(v, a_.color.b, b_.color.b)};
   }
 
-  /// Where an opacity of 1 at a ends: at the first double whose depth is at most largest_depth.
-  /// That is mostly the next one, but beside 0 it is not a denormal one, by which nobody should
-  /// have to divide.
+  /// Returns the end of an opacity of 1 at a: the first double whose depth is at most
+  /// largest_depth. That is mostly the next one, but beside 0 it is not a denormal one, by which
+  /// nobody should have to divide.
   double opaque_to() const {
     double v = value(largest_depth);
     while (v > a_.value && depth(v) <= largest_depth) v = previous(v);
     while (depth(v) > largest_depth) v = next(v);
     return v;
   }
-  /// Where one at b begins: at the first double whose depth is larger, mostly b itself.
+  /// Returns the beginning of one at b: the first double whose depth is larger, mostly b itself.
   double opaque_from() const {
     double v = value(largest_depth);
     while (depth(v) > largest_depth) v = previous(v);

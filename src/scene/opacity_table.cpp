@@ -13,7 +13,7 @@
 namespace pellucid {
 namespace {
 
-/// Of depths, of values and of the result: a few units in the last place.
+/// Rounding of depths, of values and of the result: a few units in the last place.
 constexpr double rounding = 1e-14;
 
 /// Collects the points of the transfer function, left to right. Their extinction is a depth per
@@ -51,7 +51,7 @@ class Refinement {
     push({p.value, depth, p.color});
   }
 
-  /// What lies between two entries of different opacity; a stands already.
+  /// Adds the points between two entries of different opacity; a stands already.
   void add_stretch(const OpacityPoint& a, const OpacityPoint& b) {
     const OpacityStretch stretch(a, b);
     double first = a.value, last = b.value;
@@ -117,7 +117,7 @@ class Refinement {
     push({end, w, stretch.color(end)});
   }
 
-  /// Of three points at one value the middle one has no width and goes.
+  /// Adds a point. The middle one of three points at one value has no width and is removed.
   void push(const TransferFunction::Point& p) {
     const std::size_t size = points_.size();
     if (size >= 1 && points_.back().value == p.value) {

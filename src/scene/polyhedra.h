@@ -31,7 +31,7 @@ class PolygonCut {
   /// in the middle of straight edges get triangles with area. Faces that cross themselves, and
   /// those of more than 64 points, are cut by the diagonals at their point of the smallest index.
   const std::vector<std::array<std::int32_t, 3>>& operator()(std::span<const std::int32_t> face);
-  /// Whether the last triangles run the other way than their face.
+  /// Returns whether the last triangles run the other way than their face.
   bool reversed() const noexcept { return reversed_; }
 
  private:
@@ -41,7 +41,7 @@ class PolygonCut {
 
   void cut_from_smallest();
   void project();
-  /// How good the triangle at a point of what is left is as an ear; 0: it is none.
+  /// Returns the quality of the triangle at a point of the remaining face as an ear; 0: it is none.
   double quality(std::size_t ear) const;
 
   const Vec3<double>* points_;
@@ -91,7 +91,7 @@ void cut_polyhedron(const GridCell& cell, std::int32_t middle, PolygonCut& cut, 
   }
 }
 
-/// What is wrong with the faces of a polyhedron, "its faces do not close: …"; empty: nothing.
+/// Returns the fault of the faces of a polyhedron, "its faces do not close: …"; empty: nothing.
 /// `points` and `layout` as in UnstructuredGrid, of the right lengths.
 std::string polyhedron_fault(std::span<const std::int32_t> points,
                              std::span<const std::int32_t> layout);

@@ -18,7 +18,7 @@
 namespace pellucid {
 namespace {
 
-/// What relative presets are relative to.
+/// Scale of relative presets.
 struct Scale {
   double first = 0, last = 1;
   double chord = 1;

@@ -15,7 +15,7 @@ namespace pellucid {
 namespace {
 
 constexpr int largest_size = 65536;
-/// Of a background, as in scene files.
+/// Largest component of a background, as in scene files.
 constexpr double largest_light = 1e30;
 
 constexpr std::array<std::pair<Method, std::string_view>, 13> methods{{

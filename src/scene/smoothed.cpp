@@ -16,7 +16,7 @@
 namespace pellucid {
 namespace {
 
-/// Where the Gaussian is cut, in standard deviations.
+/// Distance at which the Gaussian is cut, in standard deviations.
 constexpr double cut = 4;
 /// The largest standard deviation, in data values.
 constexpr double largest_sigma = 16384;
@@ -41,7 +41,7 @@ class AxisWeights {
   /// The values that count for value i.
   int first(int i) const noexcept { return std::max(i - reach_, 0); }
   int last(int i) const noexcept { return std::min(i + reach_, last_); }
-  /// How much of value j, one of these, is in the sum for value i.
+  /// Returns the weight of value j, one of these, in the sum for value i.
   double operator()(int i, int j) const noexcept {
     const int at = j - i + reach_, mirrored = i - j + reach_;
     double w = weight_[static_cast<std::size_t>(at)];

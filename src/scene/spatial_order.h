@@ -9,7 +9,7 @@
 
 namespace pellucid {
 
-/// Where a place stands on a Morton curve through a box, whose neighbours are mostly neighbours in
+/// Order of positions along a Morton curve through a box, whose neighbours are mostly neighbours in
 /// space (G. M. Morton: A Computer Oriented Geodetic Data Base, 1966): 21 bits of each coordinate,
 /// in units of the box's longest edge. What is outside stands as on its side; what is not finite,
 /// last.

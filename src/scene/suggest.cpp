@@ -86,7 +86,7 @@ std::vector<std::vector<double>> of_values(std::vector<std::vector<double>> matr
   return matrix;
 }
 
-/// Of the materials and boundaries of a channel and its gradient magnitude, in bins.
+/// Search for the materials and boundaries of a channel and its gradient magnitude, in bins.
 class Boundaries {
  public:
   explicit Boundaries(const Survey& survey)
@@ -163,8 +163,8 @@ GaussianPrimitive primitive_of(const NormalComponent& component, const std::vect
   return primitive;
 }
 
-/// How many deviations from the background its last values are. A few further out than three would
-/// make a component of their own.
+/// Distance of the background's last values from it, in deviations. A few further out than three
+/// would make a component of their own.
 constexpr double far_out = 4.5;
 
 /// Returns the bins that are not background, by the square roots of their counts.
@@ -188,7 +188,7 @@ std::vector<GaussianPrimitive> looked_at(std::vector<Shape> shapes, const Stage&
   return primitives;
 }
 
-/// Of data without anything but background: seen through and through.
+/// Returns Gaussians for data with nothing but background, which let all of it be seen.
 std::vector<GaussianPrimitive> haze(Stage stage, const ParallelFor& parallel,
                                     const SuggestControl& control) {
   NormalComponent all{1, stage.background->mean(), {}};

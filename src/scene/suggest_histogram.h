@@ -37,14 +37,14 @@ double value_at(const HistogramAxis& axis, double coordinate);
 /// whose neighbours are different things.
 double least_variance(const HistogramAxis& axis);
 
-/// What fills the most of the volume: what stands about the bin of the largest count, grown from
-/// that bin until it holds what is within three standard deviations, but no further than a
+/// Background, which fills the most of the volume: the bins about that of the largest count, grown
+/// from that bin until it holds what is within three standard deviations, but no further than a
 /// twentieth of an axis to a standard deviation.
 class BackgroundBin {
  public:
   BackgroundBin(const OccupiedBins& bins, const std::vector<HistogramAxis>& axes);
 
-  /// Whether coordinates in bins, one per axis, are within so many standard deviations.
+  /// Returns whether coordinates in bins, one per axis, are within so many standard deviations.
   bool holds(const double* coordinates, double deviations = 3) const;
   /// In bins.
   const std::vector<double>& mean() const noexcept { return mean_; }

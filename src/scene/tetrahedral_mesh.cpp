@@ -106,15 +106,15 @@ class Check {
   const TetrahedralMesh::Description& d_;
 };
 
-/// Whether the two tetrahedra lie on the same side of the face between them. Their corners are in
-/// ascending order, and so are the face's in both: it is turned by the number of the face.
+/// Returns whether the two tetrahedra lie on the same side of the face between them. Their corners
+/// are in ascending order, and so are the face's in both: it is turned by the number of the face.
 bool is_folded(double one, int face_of_one, double other, int face_of_other) {
   if (one == 0 || other == 0) return false;
   const bool turned = ((face_of_one ^ face_of_other) & 1) != 0;
   return turned == ((one > 0) != (other > 0));
 }
 
-/// What of the statistics is a sum over tetrahedra.
+/// Partial sums of the statistics over tetrahedra.
 struct Sums {
   std::size_t flat = 0, folded = 0;
   double volume = 0, edges = 0;

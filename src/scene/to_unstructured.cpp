@@ -7,7 +7,7 @@
 namespace pellucid {
 namespace {
 
-/// Where the corners of the cells stand along an axis, in the grid's own coordinates: at the
+/// Returns the positions of the cells' corners along an axis, in the grid's own coordinates: at the
 /// values, or at the faces between them.
 std::vector<double> corners_along(const Volume::Description& d, std::size_t axis) {
   if (!d.coordinates[axis].empty()) return d.coordinates[axis];

@@ -33,11 +33,11 @@ struct ClassedValues {
   Classes classes{};
 };
 
-/// Whether the background of a volume ends at surfaces: half of the neighboring values on either
-/// side of the threshold differ by a sixth of the distance between the means of background and
-/// rest, or more: a step of a few voxels. If more than one pair of neighbors in eight is on either
-/// side, that is noise, whose gradients mean nothing. Up to 2^18 places are looked at. `of`: its
-/// values.
+/// Returns whether the background of a volume ends at surfaces: half of the neighboring values on
+/// either side of the threshold differ by a sixth of the distance between the means of background
+/// and rest, or more: a step of a few voxels. If more than one pair of neighbors in eight is on
+/// either side, that is noise, whose gradients mean nothing. Up to 2^18 places are looked at. `of`:
+/// its values.
 bool has_surfaces(const Volume& volume, const ClassedValues& of);
 
 /// Extinctions that give a typical path through all values from one on an optical depth. The values
@@ -62,7 +62,7 @@ class PointList {
  public:
   explicit PointList(double range) : range_(range) {}
 
-  /// Where the rounded value falls on the point before, it keeps more digits.
+  /// Adds a point. Its value keeps more digits if it would be rounded to that of the point before.
   void add(double value, double extinction, Rgb<double> color) {
     for (double range = range_; range > range_ * 1e-18; range /= 10) {
       const double near =

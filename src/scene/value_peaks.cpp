@@ -53,7 +53,7 @@ class Hills {
     }
     return false;
   }
-  /// Where the height is 1/e of the top's, or the valley.
+  /// Returns the position at which the height is 1/e of the top's, or the valley.
   double flank(int top, int step) const {
     const double wanted = at(top) / std::exp(1);
     for (int i = top + step; i >= 0 && i < size(); i += step) {

@@ -12,7 +12,8 @@
 
 namespace pellucid {
 
-/// How many places are looked at in data: a quarter of a million puts a quantile within 0.1 %.
+/// Number of positions that are sampled in data: a quarter of a million puts a quantile within 0.1
+/// %.
 inline constexpr std::size_t most_places = std::size_t{1} << 18;
 
 /// Calls visit(index) with all indices below `size`, or with most_places of them if there are more:

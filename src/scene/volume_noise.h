@@ -8,7 +8,7 @@
 
 namespace pellucid {
 
-/// What Volume::noise() returns, once somebody asked.
+/// Result of Volume::noise(), once it was asked for.
 class VolumeNoise {
  public:
   std::mutex building;

@@ -85,7 +85,7 @@ VolumeScan scan(std::span<const Value> values) {
   return s;
 }
 
-/// How often each number of a type of at most 16 bits occurs, from its least upwards.
+/// Counts each number of a type of at most 16 bits, from its least upwards.
 template <class Value>
 std::vector<std::uint64_t> count_values(std::span<const Value> values) {
   static_assert(std::is_integral_v<Value> && sizeof(Value) <= 2);
