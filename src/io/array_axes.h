@@ -35,7 +35,7 @@ ArrayAxes array_axes(std::span<const std::int64_t> shape, const std::optional<st
 /// "3, 4, 5"
 std::string shape_text(std::span<const std::int64_t> shape);
 
-/// What the guess of four axes is, and how to say otherwise; for notes.
+/// Returns the guess of four axes, and how to say otherwise; for notes.
 std::string axes_note(std::span<const std::int64_t> shape, const ArrayAxes& axes);
 
 /// Copies values of `size` bytes, 1, 2, 4 or 8, so that x is the fastest axis and z the slowest.

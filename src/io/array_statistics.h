@@ -9,7 +9,7 @@
 
 namespace pellucid {
 
-/// Of each component of values that lie side by side.
+/// Returns the statistics of each component of values that lie side by side.
 inline std::vector<VolumeStatistics> component_statistics(const VolumeData& data, int components) {
   std::vector<VolumeStatistics> list(static_cast<std::size_t>(components));
   std::visit(

@@ -31,7 +31,7 @@ std::string no_name(std::string_view name) {
          "\" is no name of a channel; give 1 to 64 bytes without spaces and , : ; = ~";
 }
 
-/// What stands before the first such character, which goes with it.
+/// Cuts off and returns the text before the first such character, which goes with it.
 std::string_view cut(std::string_view& rest, char separator) {
   const std::size_t at = rest.find(separator);
   const std::string_view part = rest.substr(0, at);

@@ -36,9 +36,10 @@ inline double depth_deviation(double lower, double upper, double difference) {
 template <class Curves>
 class ChordFit {
  public:
-  /// Of each channel of color(), and of |ln| of the ratio of the depths. `format` opens the message
-  /// where that takes too many points. Numbers above the largest are cut. Where the largest opacity
-  /// is above 1, opacities are extinctions, and the ratio is theirs.
+  /// Takes the largest deviations of each channel of color(), and of |ln| of the ratio of the
+  /// depths. `format` opens the message where that takes too many points. Numbers above the largest
+  /// are cut. Where the largest opacity is above 1, opacities are extinctions, and the ratio is
+  /// theirs.
   ChordFit(const Curves& curves, double color, double depth, std::string format,
            double largest_color = 1, double largest_opacity = 1,
            std::size_t most_points = 1'000'000)
@@ -70,7 +71,7 @@ class ChordFit {
 
  private:
   using Place = decltype(std::declval<const Curves&>().place(0.0));
-  /// Of values: beside these differences are those of rounding.
+  /// Relative rounding of values: smaller differences are those of rounding.
   static constexpr double rounding = 1e-16;
 
   OpacityPoint point(double value, const Place& place) const {
@@ -98,7 +99,7 @@ class ChordFit {
     }
   }
 
-  /// Whether the chord is; what it is off by is kept.
+  /// Returns whether the chord is close enough; keeps its deviation.
   bool is_close(double begin, double end, const Place& place) {
     const Jet value({begin, end}, Range(1), Range(0));
     double color = 0;
@@ -125,7 +126,7 @@ class ChordFit {
     return true;
   }
 
-  /// Of three points at one value the middle one has no width and goes.
+  /// Adds a point. The middle one of three points at one value has no width and is removed.
   void push(const OpacityPoint& p) {
     const std::size_t size = points_.size();
     if (size >= 1 && points_.back().value == p.value && points_.back().opacity == p.opacity &&

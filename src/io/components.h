@@ -48,7 +48,8 @@ struct VolumeFile {
   std::string holds;  ///< what several components are: "3 time steps (axis 4)"
   /// The file's names of the components, which need not differ; empty: it has none.
   std::vector<std::string> component_names;
-  /// Of colors, RGB or RGBA in sRGB: the number of full light; 0: the components are no colors.
+  /// Full light of colors, RGB or RGBA in sRGB: the number of full light; 0: the components are no
+  /// colors.
   double largest_color = 0;
   std::optional<int> step;   ///< the component that a time chose
   bool reads_parts = false;  ///< whether `read` reads a part of the grid without the rest
@@ -72,7 +73,7 @@ ReadOn read_on(const ByteSource& source, std::uintmax_t from);
 /// The number of values of all components. Throws Error where no machine holds so many.
 std::size_t value_count(std::size_t points, int components, const std::string& name);
 
-/// Whether the next function reads a part of a grid without the rest.
+/// Returns whether the next function reads a part of a grid without the rest.
 bool reads_parts(const ValueLayout& layout);
 /// Each component of `points` values, as ValueLayout says how they lie; those that lie as in memory
 /// in place. The source must hold all components.

@@ -26,7 +26,8 @@ namespace pellucid {
 
 namespace {
 
-/// How it went, behind the bytes: nothing is said by a process that does not come to its end.
+/// Outcome of a child process, behind the bytes: nothing is said by a process that does not come to
+/// its end.
 struct Outcome {
   static constexpr std::size_t longest = 1000;
   enum : unsigned char { none, filled, error } is;
@@ -54,7 +55,7 @@ std::shared_ptr<std::byte> shared_memory(std::size_t bytes) {
   return {static_cast<std::byte*>(at), [bytes](std::byte* p) { munmap(p, bytes); }};
 }
 
-/// How long this process may neither run nor wait for a processor, in seconds. Set before the
+/// Time in which this process may neither run nor wait for a processor, in seconds. Set before the
 /// alarm.
 unsigned idle_limit = 0;
 timespec began{};
@@ -97,7 +98,7 @@ void end_if_idle(int) {
   raise(SIGALRM);
 }
 
-/// What a child may take.
+/// Limits of a child process.
 struct Limits {
   std::uintmax_t seconds;  ///< of a processor
   std::uintmax_t memory;   ///< beyond what the program has taken

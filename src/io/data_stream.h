@@ -14,7 +14,7 @@
 
 namespace pellucid {
 
-/// Whether the file begins as gzip does. Throws Error where it cannot be read.
+/// Returns whether the file begins as gzip does. Throws Error where it cannot be read.
 bool is_gzip(const std::filesystem::path& path);
 
 /// Bytes of a file one after the other, inflated where they are compressed (zlib or gzip, bzip2,
@@ -35,7 +35,7 @@ class DataStream {
   void skip(std::uintmax_t bytes);
   /// Goes to the end, and says how many bytes there were.
   std::uintmax_t skip_all();
-  /// Whether nothing comes any more; takes a byte where something does.
+  /// Returns whether nothing comes any more; takes a byte where something does.
   bool at_end();
   /// Checks the checksum of compressed data, where its end is near; there may be more data.
   void finish();

@@ -91,7 +91,7 @@ class Parser {
     return std::move(file_);
   }
 
-  /// Where the first element stands; nothing where the file is no DICOM file.
+  /// Returns the position of the first element; nothing if the file is no DICOM file.
   std::optional<std::uintmax_t> begin() {
     constexpr std::uintmax_t preamble = 128, magic = 4;
     if (has_magic(preamble)) return preamble + magic;

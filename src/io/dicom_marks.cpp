@@ -81,7 +81,8 @@ std::string padding_note(const DicomDataSet& file) {
          " stand for pixels without data; they are read as values";
 }
 
-/// Whether the mapping to real values says another scale than the rescale slope and intercept.
+/// Returns a note if the mapping to real values says another scale than the rescale slope and
+/// intercept.
 std::string mapping_note(const DicomDataSet& file) {
   constexpr DicomTag mappings = 0x00409096, slope = 0x00409225, intercept = 0x00409224;
   const DicomDataSet* item = file.item(mappings);

@@ -12,7 +12,7 @@ namespace pellucid {
 /// An attribute by which the volumes of one series may differ.
 struct DicomMark {
   const char* name;
-  /// Whether its values mean different quantities, times or echoes. Else they may also tell apart
+  /// True if its values mean different quantities, times or echoes. Else they may also tell apart
   /// the slices of one stack, as numbers of acquisitions do.
   bool is_decisive;
 };

@@ -122,7 +122,7 @@ class FrameFacts {
 
   bool is_dose() const { return file_.text(tag::modality) == "RTDOSE"; }
 
-  /// What stands there and is no number; empty where nothing does.
+  /// Returns the text that stands there and is no number; empty if there is none.
   std::string no_number(DicomTag group, DicomTag element) const {
     for (const DicomDataSet* groups : {frame_, shared_}) {
       const DicomDataSet* item = groups == nullptr ? nullptr : groups->item(group);
@@ -247,7 +247,7 @@ void set_unit(const DicomDataSet& data, DicomImage& image) {
   image.notes.push_back(note);
 }
 
-/// Where the frames of a file without functional groups stand, by a vector of the file.
+/// Positions of the frames of a file without functional groups, by a vector of the file.
 class FramePlaces {
  public:
   FramePlaces(const DicomDataSet& data, int frames) {

@@ -15,7 +15,7 @@
 
 namespace pellucid {
 
-/// How the values of an image are written (PS3.3, C.7.6.3).
+/// Format of the values of an image (PS3.3, C.7.6.3).
 struct DicomFormat {
   int columns = 0, rows = 0;
   int samples = 1;  ///< at each pixel: 3 of colors

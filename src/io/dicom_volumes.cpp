@@ -67,7 +67,7 @@ class Series {
     return list;
   }
 
-  /// Whether the numbers of the slices rise or fall along the normal.
+  /// Returns whether the numbers of the slices rise or fall along the normal.
   bool is_numbered_along(const Indices& part) const {
     const Indices sorted = by_height(part);
     bool rises = true, falls = true;
@@ -89,8 +89,8 @@ class Series {
     return (upper - lower) / shorter;
   }
 
-  /// Whether each part is a stack by itself, in which slices may be missing, and they stand between
-  /// each other's slices. If all together make a stack too, most of them must.
+  /// Returns whether each part is a stack by itself, in which slices may be missing, and they stand
+  /// between each other's slices. If all together make a stack too, most of them must.
   bool are_interleaved(const std::vector<Indices>& parts, const Indices& whole) const {
     double least_step = std::numeric_limits<double>::infinity();
     for (const Indices& part : parts) {
@@ -109,7 +109,7 @@ class Series {
     return is_even(whole) ? std::ranges::min(overlaps) > 0.5 : std::ranges::max(overlaps) > 0;
   }
 
-  /// Whether the distances are the same, to what rounded positions leave.
+  /// Returns whether the distances are the same, to what rounded positions leave.
   bool is_even(const Indices& part) const {
     const std::vector<double> distances = gaps(part);
     return std::ranges::max(distances) * nearly <= std::ranges::min(distances);

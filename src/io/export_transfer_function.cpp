@@ -93,7 +93,7 @@ std::vector<OwnCurves::Node> nodes(const std::vector<Point>& points, double Poin
   return list;
 }
 
-/// What stands beside the function in a volume property; null: nothing.
+/// Settings beside the function in a volume property; null: none.
 struct HeldLight {
   const Shading* shading = nullptr;
   const std::vector<GradientOpacity::Point>* gradient_opacity = nullptr;
@@ -191,7 +191,7 @@ void add_notes(const ExportOptions& options, double unit_distance, std::size_t p
                                : unit + ", which the file cannot say: set it where it is read");
 }
 
-/// What of the look the format can hold; notes say what is left out.
+/// Returns the part of the look that the format can hold; notes say what is left out.
 HeldLight held_light(const LookDescription& look, const ExportOptions& options,
                      std::vector<std::string>& notes) {
   HeldLight light;

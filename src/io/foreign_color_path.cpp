@@ -174,7 +174,7 @@ double ColorPath::hue(double value, const Place& place) const {
   return has_hue ? mix(begin_[0], end_[0], share(value, place.color_second_half)) : 0;
 }
 
-/// Where the hue passes from one sextant to the next.
+/// Adds the positions at which the hue passes from one sextant to the next.
 void ColorPath::add_hue_breaks(std::vector<double>& breaks) const {
   const double first = std::min(begin_[0], end_[0]), last = std::max(begin_[0], end_[0]);
   for (double sextant = std::floor(first * 6) + 1; sextant < last * 6; ++sextant) {

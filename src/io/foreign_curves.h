@@ -69,7 +69,7 @@ inline double place_at(double share, double from, double to, bool logarithmic) {
   return std::exp(std::log(from) + (std::log(to) - std::log(from)) * share);
 }
 
-/// What is below 0 or above the largest is cut.
+/// Returns the value, limited to 0 and the largest.
 template <class T>
 T limited(const T& value, double largest) {
   const T positive = larger(value, T(0));

@@ -11,7 +11,7 @@
 namespace pellucid::foreign {
 namespace {
 
-/// Of the intervals' ends.
+/// Relative rounding of the intervals' ends.
 constexpr double rounding = 1e-14;
 /// Moves all nodes such that they span the range.
 void move_to(Function& function, const std::array<double, 2>& range) {

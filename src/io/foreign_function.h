@@ -61,7 +61,7 @@ struct Function {
   /// beyond them.
   std::vector<GaussianNode> gaussians;
   double lower = 0, upper = 1;
-  /// What is above these is cut, if numbers of nodes are not from 0 to 1.
+  /// Largest numbers, above which they are cut, if numbers of nodes are not from 0 to 1.
   double largest_color = 1, largest_opacity = 1;
   double unit_distance = 1;
   std::optional<ShadingDescription> shading;

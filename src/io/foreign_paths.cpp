@@ -6,7 +6,8 @@
 namespace pellucid::foreign {
 namespace {
 
-/// Where the shape from a node to the next changes from its first half to its second.
+/// Returns the position at which the shape from a node to the next changes from its first half to
+/// its second.
 double middle(const OpacityNode& from, const OpacityNode& to) {
   return place_at(std::clamp(from.midpoint, 0.00001, 0.99999), from.x, to.x, from.logarithmic);
 }

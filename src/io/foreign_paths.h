@@ -48,7 +48,7 @@ class ColorPath {
   void set_diverging();
   void add_hue_breaks(std::vector<double>& breaks) const;
   void add_way_breaks(std::vector<double>& breaks) const;
-  /// Whether the way is bent by a sharpness.
+  /// Returns whether the way is bent by a sharpness.
   bool is_sharp() const { return from_.sharpness >= 0.01 && from_.sharpness <= 0.99; }
 
   ColorNode from_, to_;

@@ -13,9 +13,9 @@
 namespace pellucid::foreign {
 namespace {
 
-/// Where data end, but for the last of them: places of nodes that are farther away are these.
+/// Limit of data, but for the last of them: positions of nodes that are farther away are these.
 constexpr double farthest = 2e37;
-/// Of the ends of intervals, and of VTK's own arithmetic.
+/// Relative rounding of the ends of intervals, and of VTK's own arithmetic.
 constexpr double rounding = 1e-13;
 /// Points of one function. What is finer is fitted more coarsely, and told.
 constexpr std::size_t most_points = 200'000;
@@ -42,7 +42,7 @@ ColorSpace space_of(const ShapedFunction& function) {
   }
 }
 
-/// Whether a straight way in Lab passes a place where vtkMath's branches do not meet.
+/// Returns whether a straight way in Lab passes a place where vtkMath's branches do not meet.
 bool may_change_branch(const Rgb<double>& from, const Rgb<double>& to) {
   const auto branches = [](const Rgb<double>& color) {
     const auto [l, a, b] = lab_of(triple(color));
@@ -223,7 +223,7 @@ class Fitter {
     way_deviation_ = std::max(way_deviation_, way.deviation);
   }
 
-  /// Of three points at one place the middle one has no width and goes.
+  /// Adds a point. The middle one of three points at one place has no width and is removed.
   void push(const CurvePoint& point) {
     Curve& curve = made_.points;
     const std::size_t size = curve.size();
@@ -260,7 +260,7 @@ class Fitter {
   FittedCurve made_;
 };
 
-/// What a value is off another, as FittedCurve::deviation counts it.
+/// Returns the difference of two values, as FittedCurve::deviation counts it.
 double difference(const ShapedFunction& function, const Rgb<double>& ours,
                   const Rgb<double>& theirs) {
   if (function.is_color) return largest_component(ours - theirs);

@@ -24,8 +24,8 @@ bool begins_number(std::string_view word) {
          word.find_first_not_of("0123456789+-.eE") == std::string_view::npos;
 }
 
-/// Whether the header has a value before the colors: "value,r,g,b", "Red Green Blue", in letters of
-/// either case. Throws Error for one that says neither.
+/// Returns whether the header has a value before the colors: "value,r,g,b", "Red Green Blue", in
+/// letters of either case. Throws Error for one that says neither.
 bool value_first(const std::vector<std::string_view>& header, const std::string& where) {
   std::string columns;
   for (const std::string_view word : header) {
@@ -80,7 +80,7 @@ Rows read_rows(std::string_view text, const std::string& name) {
   return table;
 }
 
-/// Whether numbers are bytes: one is above 1. Checks them.
+/// Returns the scale of numbers, which are bytes if one is above 1. Checks them.
 double scale_of(const Rows& table, const std::string& name, std::size_t first, std::size_t last) {
   double largest = 0;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {

@@ -124,8 +124,8 @@ ColorNode visit_color(const Fields& fields, const std::string& where) {
   return {field(fields, "position", where), {part(0), part(1), part(2)}};
 }
 
-/// What VisIt's attributes say besides the control points: by enumerators' names or their numbers,
-/// as versions of VisIt write either.
+/// Reads VisIt's attributes besides the control points: by enumerators' names or their numbers, as
+/// versions of VisIt write either.
 void visit_setting(Function& function, std::string_view key, std::string_view text,
                    const std::string& where) {
   const auto list = words(text, " \t\r\n");

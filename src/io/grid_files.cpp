@@ -70,7 +70,7 @@ std::shared_ptr<std::byte> contained(
               "damaged");
 }
 
-/// Of what is no volume, in a line.
+/// Returns a line on arrays that are no volumes.
 std::string list_of(const std::vector<GridOther>& others) {
   std::string list;
   for (const GridOther& other : others) {
@@ -135,8 +135,8 @@ Volume::Description describe(const GridArray& array, const ReadOptions& options,
 
 constexpr std::array value_types{"u8", "i8", "u16", "i16", "u32", "i32", "f32", "f64"};
 
-/// What stands behind the values that a process hands over: what went wrong, a note, and the types
-/// of the components, by their numbers in value_types.
+/// Trailer of the values that a process hands over: what went wrong, a note, and the types of the
+/// components, by their numbers in value_types.
 class Trailer {
  public:
   Trailer(std::span<std::byte> bytes)

@@ -30,17 +30,17 @@ struct GridArray {
   std::array<AxisPositions, 3> positions;  ///< along x, y, z
   std::optional<GridPlacement> placement;  ///< in place of positions
   std::vector<std::string> notes;          ///< what is assumed, and what is not read
-  /// Whether a part is read without the rest (ComponentRange::part), in the type of the whole.
+  /// True if a part is read without the rest (ComponentRange::part), in the type of the whole.
   bool reads_parts = false;
 };
 
-/// What is no volume of numbers.
+/// Array that is no volume of numbers.
 struct GridOther {
   std::string name;
   std::string is;  ///< why: "a level set: …"; may be empty
 };
 
-/// What a module answers. No exception leaves it; `error` is without the file's name.
+/// Answer of a module. No exception leaves it; `error` is without the file's name.
 struct GridContents {
   std::vector<GridArray> arrays;
   std::vector<GridOther> others;
@@ -77,7 +77,7 @@ inline GridPart wanted_part(const std::array<std::int64_t, 3>& sides, ComponentR
   return *range.part;
 }
 
-/// What each module has of its own, behind these names. They throw.
+/// Functions that each module defines under these names. They throw Error.
 void list_grids(const std::filesystem::path& path, const AxisLetters& axes, GridContents& contents);
 void read_grid(const std::filesystem::path& path, const std::string& name, const AxisLetters& axes,
                ComponentRange range, GridValues& values);

@@ -7,9 +7,9 @@
 
 namespace pellucid {
 
-/// What a gzipped file holds, inflated once to know how much that is, and again where it is read.
-/// What is read in the order of its bytes is inflated once more only. Throws Error where the file
-/// is cut off or damaged.
+/// Returns the contents of a gzipped file, inflated once to know their length, and again where they
+/// are read. What is read in the order of its bytes is inflated once more only. Throws Error where
+/// the file is cut off or damaged.
 ByteSource gzip_source(const std::filesystem::path& path);
 
 /// That where the file begins as gzip does, else the file as it is.

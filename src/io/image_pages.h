@@ -31,18 +31,19 @@ class PageReader {
   PageReader& operator=(const PageReader&) = delete;
   virtual ~PageReader() = default;
 
-  /// Of the page that it stands at, first the first. Throws Error for pages that are not read.
+  /// Returns the format of the present page, which is the first one at first. Throws Error for
+  /// pages that are not read.
   virtual PageFormat format() const = 0;
-  /// What the file says of its pages. It stands at the first. Throws Error.
+  /// Returns the file's description of its pages. The first one is the present one. Throws Error.
   virtual PageDescription describe(const ReadOptions& options) const;
   /// The number of the page among the file's directories, which may have others between.
   virtual std::int64_t directory() const { return 0; }
-  /// What the page says of its own place (Micro-Manager); empty: nothing.
+  /// Returns the page's text on its own position (Micro-Manager); empty: none.
   virtual std::string metadata() const { return {}; }
   /// Takes so many planes to lie one behind the other from the values of the first page on, in
   /// place of pages. Throws Error where they cannot.
   virtual void share_first_page(std::int64_t planes);
-  /// What the page says beside its values, in an order that is the same for all pages.
+  /// Returns the marks of the page beside its values, in an order that is the same for all pages.
   virtual std::vector<PageMark> marks() const { return {}; }
   /// All values of the page, in this machine's byte order, row by row. Throws Error.
   virtual void read(std::span<std::byte> to) = 0;

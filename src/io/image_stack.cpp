@@ -51,7 +51,7 @@ bool is_shown_image(const std::string& name) {
               page_text(first) + "; all must be alike");
 }
 
-/// What is found of a stack before its values are read.
+/// Description of a stack before its values are read.
 struct Stack {
   PageVolume volume;
   PageDescription said;
@@ -204,7 +204,7 @@ class Finder {
     stack_.volume.files = {count_pages(file, *reader)};
   }
 
-  /// What a page says beside its values, and the distances of its description.
+  /// Returns the marks of a page beside its values, and the distances of its description.
   static std::vector<PageMark> marks_of(const PageReader& reader, const PageDescription& said) {
     std::vector<PageMark> marks = reader.marks();
     if (!said.writer.empty()) marks.push_back(distances_mark(said));
@@ -263,7 +263,7 @@ class Finder {
   }
   bool names_other_files() const { return !named_files().empty(); }
 
-  /// Whether the first of the files describes all of them as its own.
+  /// Returns whether the first of the files describes all of them as its own.
   bool is_set_of_files(const std::vector<fs::path>& files) {
     if (!is_tiff(files.front().filename().string())) return false;
     const std::unique_ptr<PageReader> reader = open_pages(files.front());

@@ -20,7 +20,7 @@ constexpr std::size_t largest_file = std::size_t{64} << 20;
 
 enum class Kind { own, paraview, slicer, vtk_js, anari, slicer_text, table, xml };
 
-/// Of a document by the keys at its top.
+/// Returns the kind of a document by the keys at its top.
 Kind kind_of(const Node& document) {
   if (document.is_array()) {
     const bool gaussians = document.array_size() > 0 && document.element(0).has("position");
@@ -50,7 +50,7 @@ std::string_view from_first_letter(std::string_view text) {
   return at == std::string_view::npos ? std::string_view() : text.substr(at);
 }
 
-/// Of a text that is not JSON.
+/// Returns the kind of a text that is not JSON.
 Kind kind_of(std::string_view text) {
   if (text.starts_with('<')) return Kind::xml;
   // The first line of a volume property is one number; no row of colors is.

@@ -12,7 +12,7 @@
 
 namespace pellucid {
 
-/// What a header of Inviwo or Voreen says of a file of values.
+/// Header of Inviwo or Voreen for a file of values.
 struct InviwoHeader {
   std::filesystem::path values;  ///< the file
   std::array<int, 3> dimensions{};
@@ -22,9 +22,9 @@ struct InviwoHeader {
   bool compressed = false;  ///< by gzip
   int steps = 1;            ///< of time, one behind the other in the file
   std::optional<Vec3<double>> spacing;
-  /// Whether the grid spans cells as Inviwo's do, and not from the first value to the last.
+  /// True if the grid spans cells as Inviwo's do, and not from the first value to the last.
   bool is_of_inviwo = false;
-  /// What the whole grid of Inviwo spans, from its first cell's corner at `offset`. Without a basis
+  /// Edges of the whole grid of Inviwo, from its first cell's corner at `offset`. Without a basis
   /// the spacing gives it, else it is a cube of side 2; without an offset its middle is at the
   /// origin.
   std::optional<std::array<Vec3<double>, 3>> basis;

@@ -20,7 +20,7 @@ MetaImageHeader read_meta_image_header(const std::filesystem::path& path);
 /// The grid of a header. Throws Error where its sides are no sizes of a volume.
 Volume::Description describe(const ItkHeader& header, const std::string& name);
 
-/// Where the values of a NRRD file are that are plain, or compressed as ITK does not read them.
+/// Position of the values of a NRRD file that are plain, or compressed as ITK does not read them.
 struct NrrdValues {
   static constexpr std::uintmax_t last_bytes = std::numeric_limits<std::uintmax_t>::max();
 
@@ -31,10 +31,9 @@ struct NrrdValues {
   std::uintmax_t skip_inside = 0;                      ///< of what is decompressed
 };
 
-/// What the text of a NRRD header says that ITK does not tell.
+/// Facts in the text of a NRRD header that ITK does not tell.
 struct NrrdText {
-  /// How many values there are: ITK writes as many into a buffer for the sizes that it cut down to
-  /// 32 bits.
+  /// Number of values: ITK writes as many into a buffer for the sizes that it cut down to 32 bits.
   std::uint64_t count = 0;
   /// ITK 5.2 turns this space to LPS by the wrong axis.
   bool left_anterior_superior = false;

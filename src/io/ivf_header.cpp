@@ -138,8 +138,8 @@ class Reader {
     }
   }
 
-  /// Whether a tag leaves the picture as it is: a name, the document's own, or what is so without
-  /// it.
+  /// Returns whether a tag leaves the picture as it is: a name, the document's own, or what is so
+  /// without it.
   static bool is_harmless(const XmlTag& tag) {
     constexpr std::array known = std::to_array<std::string_view>(
         {"InviwoVolume", "InviwoTreeData", "InviwoWorkspace", "MetaDataMap", "MetaData", "Wrapping",

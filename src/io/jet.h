@@ -94,7 +94,7 @@ inline double logarithm(double x) {
   return std::log(x);
 }
 
-/// Of the angle's interval.
+/// Returns the range of the cosine over the angle's interval.
 inline Range cosine(Range x) {
   constexpr double pi = std::numbers::pi;
   if (!(x.width() < 2 * pi)) return {-1, 1};
@@ -166,7 +166,7 @@ Jet branch(const Jet& x, double threshold, Low&& low, High&& high) {
   return {hull(a.value, b.value), hull(a.first, b.first), Range::all()};
 }
 
-/// How far a function may be from its chord over an interval of this length:
+/// Returns a bound on the distance of a function from its chord over an interval of this length:
 ///
 ///   h²/8 · max|f''|,  and with M and m the bounds of f'  h/4 · (M - m).
 ///

@@ -7,8 +7,8 @@
 
 namespace pellucid {
 
-/// How much more memory this program may take before somebody ends it or an allocation fails, and
-/// who says so.
+/// Memory that this program may take before somebody ends it or an allocation fails, and who says
+/// so.
 struct MemoryLimit {
   std::uintmax_t bytes;
   std::string of;  ///< "this machine", "the limit of …"
@@ -23,7 +23,7 @@ MemoryLimit memory_limit(const std::filesystem::path& root = "/");
 /// for: "brain.nii.gz: its values".
 void check_memory(std::uintmax_t bytes, const std::string& what,
                   const std::filesystem::path& root = "/");
-/// What check_memory throws; also for an allocation that fails all the same.
+/// Throws the error of check_memory; also for an allocation that fails all the same.
 [[noreturn]] void refuse_memory(std::uintmax_t bytes, const std::string& what,
                                 const MemoryLimit& limit);
 

@@ -76,7 +76,7 @@ void plain(Archive& archive, Value& value) {
   archive.bytes(&value, sizeof(value));
 }
 
-/// How many things follow, each of which takes a byte at least.
+/// Archives the number of things that follow, each of which takes a byte at least.
 template <class Archive, class List>
 void sized(Archive& archive, List& list) {
   std::uint64_t count = list.size();
@@ -135,7 +135,7 @@ void exchange(Archive& archive, Mesh& mesh) {
   }
 }
 
-/// Whether nothing points out of it: the process may have written anywhere before it ended.
+/// Returns whether nothing points out of it: the process may have written anywhere before it ended.
 bool agrees_with_itself(const UnstructuredGrid& block) {
   const std::size_t points = block.points.size(), cells = block.shapes.size();
   return std::ranges::all_of(block.corners,

@@ -19,7 +19,7 @@ namespace {
 /// Stands behind the name of an array of cells that is named like one of points.
 constexpr const char* cell_suffix = "_cell";
 
-/// How many values of a centring a block has.
+/// Returns the number of values of a centring in a block.
 std::size_t places(const UnstructuredGrid& block, Centering centering) {
   return centering == Centering::point ? block.points.size() : block.shapes.size();
 }
@@ -159,7 +159,7 @@ struct PlaceHash {
   }
 };
 
-/// Whether two points have the same values in all arrays, bit by bit: NaN is what NaN is.
+/// Returns whether two points have the same values in all arrays, bit by bit: NaN is what NaN is.
 bool same_values(const UnstructuredGrid& grid, std::size_t a, std::size_t b) {
   return std::all_of(grid.arrays.begin(), grid.arrays.end(), [&](const MeshArray& array) {
     if (array.centering == Centering::cell) return true;

@@ -215,7 +215,7 @@ std::vector<double> numbers_of(const std::string& text) {
   return numbers;
 }
 
-/// Whether a text is finite numbers alone, whole ones if wanted.
+/// Returns whether a text is finite numbers alone, whole ones if wanted.
 bool are_numbers(const std::string& text, bool are_whole) {
   std::istringstream words(text);
   for (std::string word; words >> word;) {
@@ -271,7 +271,8 @@ void check_fields(const std::vector<Field>& fields, const std::string& name) {
   }
 }
 
-/// Whether a key leaves the picture as it is: it is read, is a name, or says what is so without it.
+/// Returns whether a key leaves the picture as it is: it is read, is a name, or says what is so
+/// without it.
 bool is_taken_into_account(const Field& field, const std::vector<Field>& fields) {
   constexpr std::array known = std::to_array<std::string_view>(
       {"ObjectType", "ObjectSubType", "NDims", "DimSize", "BinaryData", "BinaryDataByteOrderMSB",
@@ -301,7 +302,8 @@ bool is_taken_into_account(const Field& field, const std::vector<Field>& fields)
   return false;
 }
 
-/// Where the axes begin, as MetaIO's letters have it: "RAI" grow to left, posterior and superior.
+/// Returns the beginnings of the axes by MetaIO's letters: "RAI" grow to left, posterior and
+/// superior.
 std::string letters_of(const Mat3<double>& direction) {
   std::string letters;
   for (const Vec3<double>& axis : direction.column) {

@@ -69,7 +69,8 @@ RasRows rows_of(const std::array<double, 3>& spacing, const std::array<double, 9
   return rows;
 }
 
-/// Where the grid is placed: as the header says, or as FreeSurfer takes it where it does not.
+/// Returns the placement of the grid: as the header says, or as FreeSurfer takes it where it does
+/// not.
 GridPlacement placement_of(const HeaderBytes& bytes, const std::array<std::int64_t, 3>& dimensions,
                            const ReadOptions& options, bool is_stated, const std::string& name) {
   std::array<double, 3> spacing{1, 1, 1}, center{};

@@ -151,7 +151,7 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-/// How printf is told to write these numbers.
+/// Returns the conversion by which printf writes these numbers.
 std::string conversion_of(const std::vector<std::string>& numbers) {
   std::set<std::size_t> decimals;
   std::size_t width = std::string::npos;
@@ -216,7 +216,7 @@ double value_of(const std::string& text) {
   return value;
 }
 
-/// Whether all of these numbers go up from file to file, in one order.
+/// Returns whether all of these numbers go up from file to file, in one order.
 bool go_up_together(const Group& group, const std::vector<std::size_t>& varying) {
   std::vector<std::size_t> rows = all_rows(group);
   const auto value = [&](std::size_t column, std::size_t row) {
@@ -231,7 +231,7 @@ bool go_up_together(const Group& group, const std::vector<std::size_t>& varying)
   });
 }
 
-/// Whether the numbers of a column have equal steps.
+/// Returns whether the numbers of a column have equal steps.
 bool has_equal_steps(const Group& group, std::size_t column) {
   std::vector<double> values;
   for (const std::string& text : group.columns[column]) values.push_back(value_of(text));

@@ -31,8 +31,8 @@ class Header {
            (version_ == 1 || version_ == 2 || version_ == 5);
   }
 
-  /// Where the last value of a variable ends. Records are the steps of all variables that have
-  /// them, in turn.
+  /// Returns the end of the last value of a variable. Records are the steps of all variables that
+  /// have them, in turn.
   std::uint64_t end() {
     const std::uint64_t records = count();
     read_dimensions();

@@ -153,7 +153,7 @@ bool states_orientation(const NiftiHeader& header) {
   return header.sform || header.qform;
 }
 
-/// Whether each axis has a length.
+/// Returns whether each axis has a length.
 bool is_usable(const GridPlacement& placement) {
   return std::ranges::all_of(std::array{0, 1, 2}, [&](int a) {
     return length(placement.direction.column[a]) > 0;  // not where it is NaN

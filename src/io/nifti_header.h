@@ -14,7 +14,7 @@
 
 namespace pellucid {
 
-/// What a header of NIfTI or Analyze says of the values.
+/// Values as a header of NIfTI or Analyze describes them.
 struct NiftiHeader {
   NiftiVersion version = NiftiVersion::one;
   bool single_file = true;  ///< header and values in one file

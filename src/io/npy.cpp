@@ -167,7 +167,7 @@ class HeaderParser {
   std::size_t position_ = 0;
 };
 
-/// What numpy calls a type, and what it is here.
+/// Type of numpy, by its name there and here.
 struct NpyType {
   std::string_view numpy;
   const char* type;
@@ -229,7 +229,7 @@ std::vector<std::size_t> strides_of(const NpyArray& array) {
   return strides;
 }
 
-/// How the values of a volume lie among those of an array.
+/// Layout of the values of a volume among those of an array.
 struct Lie {
   std::array<std::int64_t, 3> sides{};
   std::array<std::size_t, 3> strides{};  ///< of x, y, z, in values
@@ -240,7 +240,7 @@ struct Lie {
     return static_cast<std::size_t>(sides[0]) * static_cast<std::size_t>(sides[1]) *
            static_cast<std::size_t>(sides[2]);
   }
-  /// Whether x, y, z are in order, and `first` values from one x to the next.
+  /// Returns whether x, y, z are in order, and `first` values from one x to the next.
   bool is_in_order(std::size_t first) const {
     std::size_t expected = first;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -393,7 +393,7 @@ std::vector<double> read_npy_numbers(const ByteSource& source) {
 
 namespace {
 
-/// Whether bytes may lie behind the array.
+/// Treatment of bytes behind the array.
 enum class Behind { noted, refused };
 
 /// Takes positions from arrays beside this one, and turns axes that are a guess.

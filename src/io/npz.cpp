@@ -111,7 +111,7 @@ VolumeFile open_array(const ByteSource& archive, const NpzArray& array, const Re
   return file;
 }
 
-/// Whether the header of the array is that of a volume.
+/// Returns whether the header of the array is that of a volume.
 bool is_volume(const ByteSource& archive, const NpzArray& array, ReadOptions options) {
   options.note = {};
   try {

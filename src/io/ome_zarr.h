@@ -10,7 +10,7 @@
 
 namespace pellucid {
 
-/// Where the values of one level stand along each axis: index · scale + translation.
+/// Positions of the values of one level along each axis: index · scale + translation.
 struct OmeLevel {
   std::string path;  ///< of the array, from the image's group
   std::vector<double> scale, translation;
@@ -29,7 +29,7 @@ struct OmeImage {
   std::size_t images = 1;  ///< that the group describes; the first is this
 };
 
-/// What a group's attributes say of the image that it is; nothing where it is none. Throws Error.
+/// Returns the image that a group's attributes describe; nothing if it is none. Throws Error.
 std::optional<OmeImage> parse_ome_image(const scene_json::Node& attributes);
 
 /// The attributes of NGFF, which 0.5 keeps in an object "ome".

@@ -24,7 +24,8 @@ using NumberGrids = openvdb::TypeList<openvdb::FloatGrid, openvdb::DoubleGrid, o
                                       openvdb::Int64Grid, openvdb::BoolGrid, openvdb::MaskGrid,
                                       openvdb::Vec3SGrid, openvdb::Vec3DGrid, openvdb::Vec3IGrid>;
 
-/// What one number of a voxel is kept as; whole numbers of 64 bits in what holds them all.
+/// Type in which one number of a voxel is kept; of whole numbers of 64 bits one that holds them
+/// all.
 template <class Number>
 using Kept = std::conditional_t<std::is_same_v<Number, bool>, std::uint8_t, Number>;
 
@@ -62,7 +63,7 @@ class File {
   openvdb::io::File file_;
 };
 
-/// Where the box of active voxels begins, and how many there are along each axis.
+/// Beginning of the box of active voxels, and its size along each axis.
 struct Box {
   openvdb::Coord first;
   std::array<std::int64_t, 3> sides{};
@@ -222,7 +223,7 @@ void copy_box(const Grid& grid, const Box& box, int component, std::span<std::by
   }
 }
 
-/// Those of a grid of whole numbers of 64 bits.
+/// Reads those of a grid of whole numbers of 64 bits.
 void read_whole_numbers(const openvdb::Int64Grid& grid, const Box& box, std::size_t points,
                         GridValues& values) {
   std::vector<std::int64_t> numbers(points);

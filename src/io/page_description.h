@@ -32,13 +32,13 @@ struct ValueCalibration {
   bool operator==(const ValueCalibration&) const = default;
 };
 
-/// What an image file says of itself besides the values of its pages.
+/// Description of an image file besides the values of its pages.
 struct PageDescription {
   std::string writer;  ///< who describes the pages, for messages: "ImageJ"; empty: nobody does
 
   std::vector<PageAxis> axes;  ///< of the pages, the fastest first; empty: pages are slices
   std::vector<PageRun> runs;   ///< empty: all pages, from the first plane on
-  /// Whether the planes may lie behind the first page, without pages of their own.
+  /// True if the planes may lie behind the first page, without pages of their own.
   bool may_share_one_page = false;
   std::vector<std::string> channels;  ///< names; empty: none
   std::optional<double> time_step;

@@ -22,7 +22,7 @@ namespace {
 
 using Dimensions = std::array<std::int32_t, 3>;
 
-/// How the numbers of a file lie.
+/// Layout of the numbers of a file.
 struct Layout {
   bool big_endian = false;
   bool marks = false;    ///< each record between two lengths, as Fortran writes them
@@ -213,9 +213,9 @@ UnstructuredGrid read_block(Reader& file, const Layout& layout, const Dimensions
   return block;
 }
 
-/// What follows from density, momentum and energy, for an ideal gas whose ratio of specific heats
-/// is 1.4, in units of density and speed of sound of the free stream; the gas constant is 1. Where
-/// there is no density there is nothing.
+/// Adds the quantities that follow from density, momentum and energy, for an ideal gas whose ratio
+/// of specific heats is 1.4, in units of density and speed of sound of the free stream; the gas
+/// constant is 1. Where there is no density there is nothing.
 template <class Value>
 void add_derived(const DataArray<Value>& q, UnstructuredGrid& block) {
   constexpr double gamma = 1.4;

@@ -63,7 +63,7 @@ bool is_finite(std::span<const double> numbers) {
   return std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); });
 }
 
-/// Whether positions are finite and in order, upwards or downwards.
+/// Returns whether positions are finite and in order, upwards or downwards.
 bool is_in_order(std::span<const double> positions) {
   return is_finite(positions) &&
          (std::ranges::adjacent_find(positions, std::greater_equal<>{}) == positions.end() ||

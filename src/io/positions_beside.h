@@ -33,7 +33,7 @@ inline constexpr std::int64_t most_beside = 64;
 /// `shape` is that of the array of values beside it.
 bool may_say_positions(const ArrayBeside& array, std::span<const std::int64_t> shape);
 
-/// Where the axes of an array of values are, and what is not taken into account.
+/// Axes of an array of values, and facts that are not taken into account.
 struct PositionsBeside {
   std::array<std::size_t, 3> space{};      ///< the axes that are x, y and z
   std::array<AxisPositions, 3> positions;  ///< along x, y, z; without numbers: nothing is said
@@ -42,7 +42,7 @@ struct PositionsBeside {
   std::vector<std::string> notes;          ///< each begins with "its"
 };
 
-/// What is known of the axes of an array of values.
+/// Known axes of an array of values.
 struct KnownAxes {
   std::array<std::size_t, 3> space{};     ///< x, y, z
   std::optional<std::size_t> components;  ///< the fourth

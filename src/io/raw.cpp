@@ -9,7 +9,7 @@ namespace pellucid {
 
 namespace {
 
-/// What the options say of headerless data.
+/// Shape of headerless data, by the options.
 struct RawShape {
   VolumeFile file;  ///< without what reads the values
   ValueLayout layout;

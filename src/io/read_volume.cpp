@@ -41,7 +41,8 @@ VolumeFile open_file(const std::filesystem::path& path, const ReadOptions& optio
   return format.open(path, options);
 }
 
-/// What `read` makes of the opened file, with one line for all that memory does not hold.
+/// Returns the result of `read` for the opened file, with one line for all that memory does not
+/// hold.
 template <class Read>
 auto with_memory(const std::filesystem::path& path, const Read& read) {
   try {

@@ -76,7 +76,7 @@ class Node {
   std::size_t one_of(const std::vector<std::string_view>& words) const;
 
   const std::string& pointer() const noexcept { return pointer_; }
-  /// What opens the messages: "name: pointer".
+  /// Returns the beginning of messages: "name: pointer".
   std::string where() const;
 
  private:

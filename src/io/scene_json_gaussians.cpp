@@ -99,7 +99,7 @@ ChannelFactorDescription factor(const Node& node) {
   return description;
 }
 
-/// What the numbers cannot be, seen from the Gaussian alone.
+/// Checks the numbers, as far as the Gaussian alone can tell.
 void check(const Node& node, const GaussianDescription& description) {
   GaussianDescription alone = description;
   alone.channels.clear();

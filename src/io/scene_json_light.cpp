@@ -108,7 +108,7 @@ class ChannelCheck {
                     "; there are: " + list);
     }
   }
-  /// Whether they are the same variable.
+  /// Returns whether they are the same variable.
   bool are_same(const std::string& a, const std::string& b) const {
     return (a.empty() ? names_.front() : a) == (b.empty() ? names_.front() : b);
   }

@@ -17,7 +17,7 @@
 namespace pellucid {
 namespace {
 
-/// What is made of a scene's one field where a term names it.
+/// Channels that are made of a scene's one field if a term names them.
 constexpr std::array made_of_field{DerivedSource::Kind::gradient_magnitude,
                                    DerivedSource::Kind::second_derivative};
 
@@ -33,13 +33,13 @@ bool names(const MultivariateDescription& function, std::string_view channel) {
          (function.factor && function.factor->channel == channel);
 }
 
-/// What the functions of all layers have in common.
+/// Options that the functions of all layers share.
 struct Wanted {
   double tolerance;
   std::optional<Background> background;
 };
 
-/// Of a volume or a mesh.
+/// Returns the function of a volume or a mesh.
 template <class Data>
 TransferFunction function_of(const std::optional<TransferFunctionDescription>& description,
                              const Wanted& wanted, const Data& data,
@@ -54,8 +54,8 @@ TransferFunction function_of(const std::optional<TransferFunctionDescription>& d
   return make_transfer_function(*description, wanted.tolerance, wanted.background);
 }
 
-/// Of a layer of one variable. Without a function between surfaces it is transparent; slices
-/// without colors take its own.
+/// Returns the function of a layer of one variable. Without a function between surfaces it is
+/// transparent; slices without colors take its own.
 template <class Data>
 TransferFunction medium_function(const LayerDescription& description, const Wanted& wanted,
                                  const Data& data) {
@@ -74,7 +74,7 @@ TransferFunction medium_function(const LayerDescription& description, const Want
   return TransferFunction({{0, 0, {0, 0, 0}}});
 }
 
-/// Of several variables.
+/// Returns a transparent function of several variables.
 std::shared_ptr<const MultivariateTransferFunction> transparent_function(std::size_t channels) {
   return std::make_shared<const MultivariateTransferFunction>(
       static_cast<int>(channels), std::vector<GaussianPrimitive>(),
@@ -135,7 +135,7 @@ ChannelsContent load_channels_content(const LayerDescription& description,
   return content;
 }
 
-/// Of a volume or a mesh.
+/// Returns the look of a volume or a mesh.
 template <class Data>
 Look look_of(const Data& data, const LayerDescription& description) {
   const WantedLook& wanted = *description.look;

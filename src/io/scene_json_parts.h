@@ -39,7 +39,7 @@ MeshSource mesh_source(const Node& mesh, const std::filesystem::path& folder);
 /// A path that is not empty.
 std::filesystem::path file_path(const Node& file, const std::filesystem::path& folder);
 
-/// Whether the colors of a transfer function are sRGB signals: its "color_space".
+/// Returns whether the colors of a transfer function are sRGB signals: its "color_space".
 bool is_srgb(const Node& function);
 /// [r, g, b] as linear light: 0 or more, or of sRGB 0 to 1.
 Rgb<double> color_of(const Node& node, bool srgb);

@@ -502,7 +502,7 @@ void add_look(const LayerDescription& layer, const std::string& indent, Members&
   add_list("slices", layer.slices, slice_text);
 }
 
-/// Whether it is a white head light alone, the default.
+/// Returns whether it is a white head light alone, the default.
 bool are_default(const std::vector<Light>& lights) {
   return lights.size() == 1 && std::holds_alternative<HeadLight>(lights.front().kind) &&
          lights.front().color == Rgb<double>{1, 1, 1};

@@ -50,7 +50,7 @@ std::string letters_in(const Node& axes) {
   return letters;
 }
 
-/// How many of the last axes are a page's; nothing where they are not.
+/// Returns the number of the last axes that are a page's; nothing if they are not.
 std::optional<std::size_t> axes_of_page(const Shape& shape, const DescribedPage& page) {
   const Shape choices[] = {{page.rows, page.columns, page.samples},
                            {page.samples, page.rows, page.columns},

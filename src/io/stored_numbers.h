@@ -20,7 +20,7 @@ namespace pellucid {
 ///
 /// No function here needs more than pellucid::scene, so that modules can use them too.
 
-/// Whether the name is one of these: "f16", "i64", "u64".
+/// Returns whether the name is one of these: "f16", "i64", "u64".
 bool is_stored_only(std::string_view type) noexcept;
 
 /// Returns the first of u8, i8, u16, i16, u32 and i32 that has so many bytes at least and holds the

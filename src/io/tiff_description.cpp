@@ -206,7 +206,7 @@ void read_resolution(TIFF* tiff, const DescribedPage& page, PageDescription& sai
   }
 }
 
-/// Whether GDAL's metadata have a scale or an offset of the values.
+/// Returns whether GDAL's metadata have a scale or an offset of the values.
 bool has_gdal_scale(TIFF* tiff) {
   if (private_tiff_count(tiff, gdal_tag) == 0) return false;
   const std::string text = private_tiff_bytes(tiff, gdal_tag);

@@ -217,7 +217,7 @@ class TiffReader : public PageReader {
   }
   double resolution(std::uint32_t tag) const { return static_cast<double>(field<float>(tag)); }
 
-  /// Whether the page is a thumbnail or a mask of another.
+  /// Returns whether the page is a thumbnail or a mask of another.
   bool is_other_image() const {
     const auto kind = field<std::uint32_t>(TIFFTAG_SUBFILETYPE);
     return (kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) != 0;
@@ -227,7 +227,7 @@ class TiffReader : public PageReader {
       go_on();
     }
   }
-  /// Whether each strip begins where the one before it ends.
+  /// Returns whether each strip begins where the one before it ends.
   bool strips_follow() const {
     std::uint64_t at = first_byte_;
     for (std::uint32_t i = 0; i < TIFFNumberOfStrips(tiff_.get()); ++i) {

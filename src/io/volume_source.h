@@ -14,9 +14,9 @@
 
 namespace pellucid {
 
-/// Where the bytes of a volume come from: a file, or memory in tests and fuzzing. `read` fills the
-/// whole span from the given place, which the caller has checked to lie inside; `map` gives the
-/// first so many in place, or null where it cannot, and may itself be missing.
+/// Source of the bytes of a volume: a file, or memory in tests and fuzzing. `read` fills the whole
+/// span from the given place, which the caller has checked to lie inside; `map` gives the first so
+/// many in place, or null where it cannot, and may itself be missing.
 struct ByteSource {
   std::string name;         ///< for messages
   std::uintmax_t size = 0;  ///< bytes
@@ -32,7 +32,7 @@ ByteSource memory_source(std::span<const std::byte> bytes, std::string name);
 /// Is told a line that a user should know.
 using Note = std::function<void(const std::string&)>;
 
-/// How values lie in a file.
+/// Layout of values in a file.
 struct ValueLayout {
   std::string type;  ///< "u8" … "f64", or one that only files have (stored_numbers.h)
   bool big_endian = false;

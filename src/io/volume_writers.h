@@ -14,7 +14,7 @@ namespace pellucid {
 /// Takes the bytes that come next.
 using Sink = std::function<void(std::span<const std::byte>)>;
 
-/// What is written: components on one grid, of one type.
+/// Volume to write: components on one grid, of one type.
 struct WrittenVolume {
   std::span<const Volume> components;
   std::string array;  ///< its name
@@ -25,7 +25,7 @@ struct WrittenVolume {
   int count() const { return static_cast<int>(components.size()); }
 };
 
-/// What the format does not hold, one line each.
+/// Facts that the format does not hold, one line each.
 using Losses = std::vector<std::string>;
 
 Losses write_nrrd(const WrittenVolume& volume, const Sink& sink);

@@ -44,7 +44,7 @@ enum VtkType : int {
   bezier_pyramid = 81
 };
 
-/// Whether cells of this type are surfaces, lines or points, or nothing.
+/// Returns whether cells of this type are surfaces, lines or points, or nothing.
 bool is_flat(int type) {
   constexpr int flat[] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  21, 22, 23, 28, 30, 34,
                           35, 36, 51, 52, 53, 54, 60, 61, 62, 63, 68, 69, 70, 75, 76, 77};

@@ -16,9 +16,10 @@ namespace pellucid {
 struct VtkCell {
   int type = 0;  ///< VTK's number
   std::span<const std::int64_t> points;
-  /// Of polyhedra: the number of faces, and of each face the number of its points and these.
+  /// Faces of polyhedra: the number of faces, and of each face the number of its points and these.
   std::span<const std::int64_t> faces{};
-  /// Of Lagrange cells, where the file says them; else their points are as many along each axis.
+  /// Orders of Lagrange cells, if the file says them; else their points are as many along each
+  /// axis.
   std::optional<std::array<int, 3>> orders{};
 };
 

@@ -22,7 +22,7 @@ namespace pellucid {
 
 namespace {
 
-/// What readers need where places or values are in arrays of their own.
+/// Remedy for readers that need positions or values in arrays of their own.
 constexpr const char* file_size_remedy =
     "give it file_size = 1, which some writers forget (ncatted -a file_size,global,c,l,1)";
 

@@ -9,14 +9,14 @@
 
 namespace pellucid {
 
-/// What a file of VTK's says that it holds.
+/// Contents of a file of VTK's, as it says.
 struct VtkFileKind {
   bool xml = false;  ///< else legacy
   std::string data;  ///< "ImageData" … of XML; "STRUCTURED_POINTS" … of legacy files, in capitals
   /// Legacy grids: the points along the axes.
   std::optional<std::array<std::int64_t, 3>> points;
 
-  /// Whether that is a volume: an image or a rectilinear grid.
+  /// Returns whether that is a volume: an image or a rectilinear grid.
   bool is_volume() const;
 };
 

@@ -296,7 +296,7 @@ vtkUnsignedCharArray* point_flags(vtkDataSet& set) {
   return flags;
 }
 
-/// Whether one of a cell's corners is hidden, which hides the cell.
+/// Returns whether one of a cell's corners is hidden, which hides the cell.
 bool has_hidden_corner(vtkUnsignedCharArray& flags, std::span<const std::int64_t> corners) {
   return std::ranges::any_of(corners, [&](std::int64_t point) {
     return point >= 0 && point < flags.GetNumberOfValues() &&

@@ -130,7 +130,8 @@ bool looks_like_vtk_hdf(const std::filesystem::path& path) {
   return !error && size > most && bytes_from(size - most, most).find(group) != std::string::npos;
 }
 
-/// How many values an array has, or one component of it. Throws Error where no machine holds them.
+/// Returns the number of values of an array, or of one component of it. Throws Error where no
+/// machine holds them.
 std::size_t count_of(const VtkHdfArray& array, bool component, const std::string& name) {
   constexpr std::int64_t largest = std::int64_t{1} << 58;
   std::int64_t count = 1;

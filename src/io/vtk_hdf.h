@@ -26,7 +26,7 @@ struct VtkHdfArray {
   std::string fault;                ///< why it cannot be read; empty: it can
 };
 
-/// What stands in the group VTKHDF of a file.
+/// Contents of the group VTKHDF of a file.
 struct VtkHdfContents {
   std::string type;  ///< "ImageData" …; empty: there is no such group
   std::int64_t version = 0;
@@ -53,8 +53,9 @@ using ReadVtkHdf = void(const std::filesystem::path& path, std::span<const VtkHd
 inline constexpr const char* list_vtk_hdf_name = "pellucid_list_vtk_hdf_1";
 inline constexpr const char* read_vtk_hdf_name = "pellucid_read_vtk_hdf_2";
 
-/// What a file holds; nothing where it is no VTKHDF file. Asks HDF5 only where the first bytes, or
-/// the name, are of that kind. Throws Error where HDF5 cannot read it, or the build has none.
+/// Returns the contents of a file; nothing if it is no VTKHDF file. Asks HDF5 only where the first
+/// bytes, or the name, are of that kind. Throws Error where HDF5 cannot read it, or the build has
+/// none.
 std::optional<VtkHdfContents> vtk_hdf_contents(const std::filesystem::path& path);
 /// The same of a file that is one. Throws Error for kinds, versions and steps that are not read.
 VtkHdfContents vtk_hdf_contents(const std::filesystem::path& path, const char* type);

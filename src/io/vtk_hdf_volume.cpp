@@ -34,7 +34,7 @@ struct Image {
 
 constexpr const char* ghosts = "vtkGhostType";
 
-/// Of cells there is one less along each axis.
+/// Returns the number of values along an axis: of cells there is one less than of points.
 std::int64_t side(const Image& image, const VtkHdfArray& array, std::size_t axis) {
   return image.points[axis] - (array.place == VtkHdfArray::Place::cell ? 1 : 0);
 }

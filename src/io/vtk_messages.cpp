@@ -70,7 +70,8 @@ class VtkMessages::Window : public vtkOutputWindow {
   }
 
  private:
-  /// Of a legacy text that is cut off VTK only warns, and gives what memory holds.
+  /// Takes a warning for an error where VTK gives what memory holds: for a legacy text that is cut
+  /// off.
   void take_warning(const char* text) {
     if (text != nullptr && std::string_view(text).find("Error reading") != std::string_view::npos) {
       DisplayErrorText(text);

@@ -18,7 +18,7 @@ namespace pellucid {
 /// The formats that VTK reads.
 enum class VtkFormat { xml, legacy, exodus };
 
-/// What the module makes of a file: the mesh, or what went wrong, without the file's name. No
+/// Answer of the module to a file: the mesh, or what went wrong, without the file's name. No
 /// exception leaves it.
 struct VtkAnswer {
   MeshBlocks mesh;
@@ -39,7 +39,7 @@ struct VtkArrayName {
   std::string in_file;
 };
 
-/// What is wanted of an image or a rectilinear grid.
+/// Request for an image or a rectilinear grid.
 struct VtkVolumeRequest {
   VtkFormat format = VtkFormat::xml;
   std::string data;                  ///< as VtkFileKind has it
@@ -59,10 +59,10 @@ struct VtkVolumeRequest {
 struct VtkVolume {
   std::array<int, 3> points{};
   std::array<int, 3> first{};  ///< of an image: the numbers of its first point along the axes
-  /// Of an image: where its first point stands, the distances, and the axes.
+  /// Placement of an image: the position of its first point, the distances, and the axes.
   GridPlacement placement;
-  /// Of a rectilinear grid: the positions of its points, and the largest relative error that their
-  /// type leaves them.
+  /// Positions of a rectilinear grid's points, and the largest relative error that their type
+  /// leaves them.
   std::array<std::vector<double>, 3> positions;
   double rounding = 0;
   std::vector<MeshArray> arrays;

@@ -9,7 +9,7 @@
 
 namespace pellucid {
 
-/// How far pieces of a grid disagree about values that several of them have.
+/// Differences of the pieces of a grid in values that several of them have.
 struct PieceDifferences {
   std::uint64_t count = 0;  ///< of values that differ
   double largest = 0;       ///< difference of two values; infinite where one of them is missing

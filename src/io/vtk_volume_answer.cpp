@@ -55,7 +55,7 @@ Centering centering_of(const json& is_cell) {
   return is_cell.get<bool>() ? Centering::cell : Centering::point;
 }
 
-/// Whether nothing is read outside of the values.
+/// Returns whether nothing is read outside of the values.
 bool agrees_with_itself(const OpenedVtkVolume& opened, std::size_t count) {
   const Volume::Description& d = opened.description;
   std::size_t places = static_cast<std::size_t>(std::max(opened.components, 1));

@@ -26,7 +26,7 @@ namespace {
 
 // vtkDataSetAttributes.h, of VTK 9.
 constexpr unsigned hidden_point = 2;
-/// Of a cell that is hidden, or that another level refines.
+/// Flags of a cell that is hidden, or that another level refines.
 constexpr unsigned hidden_cell = 32 | 8;
 
 /// A legacy file's values are not compressed: one of bits has eight in a byte, and those of its
@@ -117,7 +117,7 @@ VtkVolume read_grid(const std::filesystem::path& path, const Wanted& wanted) {
   return volume;
 }
 
-/// Where the values of the array stand.
+/// Returns the grid on which the values of the array stand.
 Volume::Description describe(VtkVolume& grid, Centering centering, const std::string& name) {
   Volume::Description description;
   description.name = name;
@@ -159,7 +159,7 @@ void override_placement(const ReadOptions& options, Volume::Description& descrip
   apply_overrides(options, description);
 }
 
-/// Whether a cell, or one of its corners, is hidden.
+/// Returns whether a cell, or one of its corners, is hidden.
 bool is_cell_hidden(const VtkVolume& grid, std::size_t cell) {
   if (!grid.cell_ghosts.empty() && (grid.cell_ghosts[cell] & hidden_cell) != 0) return true;
   if (grid.point_ghosts.empty()) return false;

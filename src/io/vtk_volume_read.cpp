@@ -74,7 +74,7 @@ void add_entry(Entry entry, std::vector<Entry>& entries) {
   entries.push_back(std::move(entry));
 }
 
-/// As the file's head tells them, before values are read.
+/// Returns the entries as the file's head tells them, before values are read.
 std::vector<Entry> entries_of(vtkInformation& about) {
   std::vector<Entry> entries;
   for (const Centering centering : {Centering::point, Centering::cell}) {
@@ -125,7 +125,7 @@ const Entry& entry_to_show(const std::vector<Entry>& entries) {
   return scalar != entries.end() ? *scalar : entries.front();
 }
 
-/// Those that are wanted. Throws Error where there is none, or none of that name.
+/// Returns the entries that are wanted. Throws Error where there is none, or none of that name.
 std::vector<Entry> choose(const std::vector<Entry>& entries, const VtkVolumeRequest& request,
                           VtkVolume& volume) {
   if (entries.empty()) throw Error("has no array of numbers");
@@ -243,7 +243,7 @@ Extent whole_extent(vtkInformation& about) {
   return extent;
 }
 
-/// What the entries take, as they are read and as they are kept.
+/// Returns the size of the entries, as they are read and as they are kept.
 std::uintmax_t bytes_of(const std::vector<Entry>& entries, const Extent& of) {
   const int* const extent = of.data();
   double points = 1, bytes = 0;
@@ -260,7 +260,7 @@ std::uintmax_t bytes_of(const std::vector<Entry>& entries, const Extent& of) {
   return static_cast<std::uintmax_t>(bytes);
 }
 
-/// Whether the entries' values have one type, whichever part is read, and none is hidden.
+/// Returns whether the entries' values have one type, whichever part is read, and none is hidden.
 bool reads_parts(const std::vector<Entry>& entries, vtkDataArraySelection& points,
                  vtkDataArraySelection& cells, bool hides_nothing) {
   const std::string ghosts = ghost_name();
@@ -304,7 +304,7 @@ void read_part(Reader& reader, const std::vector<Entry>& entries, const Extent& 
   image->ReleaseData();
 }
 
-/// What the head says of an image, without values.
+/// Takes from the head the description of an image, without values.
 void take_outline(vtkInformation& about, const std::vector<Entry>& entries, VtkVolume& volume) {
   double origin[] = {0, 0, 0}, spacing[] = {1, 1, 1};
   double direction[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -22,7 +22,7 @@ namespace pellucid {
 
 namespace {
 
-/// What the root element says that the file holds.
+/// Returns the contents of the file that the root element names.
 std::string kind_of(const std::filesystem::path& path, const VtkMessages& messages) {
   const auto tester = vtkSmartPointer<vtkXMLFileReadTester>::New();
   tester->SetFileName(path.c_str());

@@ -44,7 +44,7 @@ struct VtkXmlPiece {
   std::vector<VtkXmlArray> arrays;
 };
 
-/// What one of VTK's XML files holds, without values.
+/// Contents of one of VTK's XML files, without values.
 struct VtkXmlFile {
   std::string kind;  ///< "ImageData", "PUnstructuredGrid" …
   std::optional<VtkExtent> whole;

@@ -7,7 +7,7 @@
 
 namespace pellucid {
 
-/// How a file of VTK's XML stores arrays in binary.
+/// Coding of binary arrays in a file of VTK's XML.
 struct VtkXmlCoding {
   bool big_endian = false, compressed = false;
   std::uint64_t header_size = 4;  ///< bytes of each number of a header: header_type

@@ -329,7 +329,8 @@ void check_place(const VtkXmlPlace& own, const VtkXmlPlace& list, const VtkExten
   }
 }
 
-/// Of structured grids duplicates do no harm, and levels are of these alone.
+/// Returns whether an array marks cells as ghosts. Duplicates in structured grids do no harm, and
+/// levels are of these alone.
 bool is_ghost_type(const VtkXmlArray& array, const VtkXmlFile& file) {
   return is_data(array.section) && (array.name == "vtkGhostType" ||
                                     (array.name == "vtkGhostLevels" && !is_structured(file.kind)));

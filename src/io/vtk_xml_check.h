@@ -19,7 +19,7 @@ struct ListedPiece {
   std::array<int, 6> extent{};
 };
 
-/// What a file was found to have.
+/// Contents that were found in a file.
 struct CheckedVtkXml {
   std::vector<double> times;  ///< of its steps in time; empty: there are none
   /// A piece of an unstructured grid flags ghosts, but the list of pieces does not name the array:

@@ -16,7 +16,8 @@ std::string vtk_type_name() {
          std::to_string(8 * sizeof(Value));
 }
 
-/// As an attribute of XML: UTF-8, which allows no control characters even where they are escaped.
+/// Returns a text as an attribute of XML: UTF-8, which allows no control characters even where they
+/// are escaped.
 std::string xml_attribute(std::string_view text);
 
 /// The element VTKFile of a file with arrays appended as they lie in memory, to its end.

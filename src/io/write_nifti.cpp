@@ -48,7 +48,8 @@ std::array<std::array<double, 4>, 3> map_of(const GridPlacement& placement) {
   return rows;
 }
 
-/// How far rounding moves any value of the grid, at most, along an axis of the world.
+/// Returns the largest distance that rounding moves any value of the grid along an axis of the
+/// world.
 double moved_by(const std::array<std::array<double, 4>, 3>& rows, const std::array<int, 3>& sides) {
   double most = 0;
   for (const std::array<double, 4>& row : rows) {

@@ -56,7 +56,7 @@ std::uint32_t little_32(std::span<const std::byte> bytes) {
   return number;
 }
 
-/// What a codec makes of so many bytes; nothing where that depends on them.
+/// Returns the size that a codec makes of so many bytes; nothing if that depends on them.
 std::optional<std::size_t> encoded_size(const ZarrCodec& codec, std::size_t bytes) {
   constexpr std::size_t checksum = 4;
   switch (codec.kind) {

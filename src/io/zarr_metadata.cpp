@@ -322,7 +322,7 @@ ZarrChain parse_chain(const Node& list, const ZarrType& type, std::size_t axes, 
   return chain;
 }
 
-/// What stands in "compressor" or in "filters": an object with its "id".
+/// Adds a codec of "compressor" or of "filters": an object with its "id".
 void add_codec(const Node& node, const ZarrType& type, ZarrChain& chain) {
   const Node id = node.at("id", "give the name of the codec");
   chain.codecs.push_back(numcodecs_codec(id.string(), node, &node, type));

@@ -48,8 +48,8 @@ struct ZarrCodec {
 
 struct ZarrShards;
 
-/// How a chunk becomes bytes: the axes are permuted, the values or smaller chunks of them become
-/// bytes in C order, the codecs follow in their order.
+/// Way in which a chunk becomes bytes: the axes are permuted, the values or smaller chunks of them
+/// become bytes in C order, the codecs follow in their order.
 struct ZarrChain {
   std::vector<std::size_t> order;  ///< the stored axes, by their places among the chunk's
   bool big_endian = false;
@@ -89,7 +89,7 @@ struct ZarrNode {
 
 /// Reads the metadata of a folder; nothing where it is no node of a store. Throws Error.
 std::optional<ZarrNode> read_zarr_node(const std::filesystem::path& folder);
-/// What a node says of its array. Throws Error for what is wrong or not read.
+/// Returns the array that a node describes. Throws Error for what is wrong or not read.
 ZarrArray zarr_array(const ZarrNode& node);
 
 /// The parsers of both versions, apart for tests and fuzzing.

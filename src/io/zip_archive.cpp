@@ -46,11 +46,11 @@ std::vector<std::byte> read_part(const ByteSource& archive, std::uintmax_t from,
 
 struct Directory {
   std::uintmax_t begin = 0, size = 0, entries = 0;
-  /// What stands in front of the archive in its file and is not counted in places.
+  /// Bytes in front of the archive in its file, which positions do not count.
   std::uintmax_t before = 0;
 };
 
-/// Where the record at the end of the archive begins, in its last bytes.
+/// Returns the position of the record at the end of the archive, in its last bytes.
 std::size_t find_end(std::span<const std::byte> tail, const std::string& name) {
   constexpr std::size_t size = 22;
   for (std::size_t at = tail.size() < size ? 0 : tail.size() - size + 1; at-- > 0;) {
