@@ -55,9 +55,9 @@ class BrickTree {
 
  private:
   struct Node {
-    RayRegion::HalfSpace above{};  ///< of the plane
+    RayRegion::HalfSpace above{};  ///< half-space of the plane
     int below_child = -1, above_child = -1;
-    int brick = -1;  ///< of a leaf
+    int brick = -1;  ///< index of a leaf
   };
   class Splitter;
   class Assembler;

@@ -17,7 +17,7 @@ struct RankSignal {
   enum class Kind : int { progress, stop };
   Kind kind = Kind::progress;
   int from = 0;         ///< the sender
-  long frame = 0;       ///< of the sender
+  long frame = 0;       ///< rank of the sender
   double fraction = 0;  ///< progress: of the sender's work
 };
 

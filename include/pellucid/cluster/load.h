@@ -14,7 +14,7 @@ namespace pellucid {
 /// Quantity that is shared equally among the bricks.
 enum class BrickBalance {
   data,  ///< the volume of the data, and with it memory
-  work,  ///< what absorbs; a brick has at most twice its part of the volume
+  work,  ///< absorption; a brick has at most twice its part of the volume
 };
 
 /// A scene of which this rank has the data of its brick.
@@ -22,7 +22,7 @@ struct BrickedScene {
   Scene scene;
   BrickTree tree;
   std::array<Vec3<double>, 8> visible{};  ///< visible_corners() of the whole scene
-  std::vector<MeshSource> meshes;         ///< as make_scene() tells them
+  std::vector<MeshSource> meshes;         ///< sources, as make_scene() returns them
   /// Data values along the axes of each layer's whole grid; 0 for meshes.
   std::vector<std::array<int, 3>> dimensions;
   std::vector<std::size_t> nan;  ///< nan_values()

@@ -36,7 +36,7 @@ struct Tile {
   int column = 0, row = 0;
   int columns = 0, rows = 0;
   int stride = 1;
-  int level = 0;  ///< of the preview; 0 is the finest
+  int level = 0;  ///< level of the preview; 0 is the finest
 };
 
 /// A finished tile and the image that contains it. Until finer tiles are finished, a pixel of level
@@ -94,14 +94,14 @@ struct RenderOptions {
 /// Statistics of a rendered frame.
 struct RenderReport {
   double seconds = 0;
-  double setup_seconds = 0;  ///< of `seconds`: until the first ray
+  double setup_seconds = 0;  ///< part of `seconds` until the first ray
   int threads = 0;
   /// Account of the work done by each processor, in words, if RenderOptions::device is not the CPU;
   /// else empty.
   std::string device;
   std::uint64_t rays = 0;         ///< traced rays
   std::uint64_t cells = 0;        ///< cells visited (exact) or samples taken (the others)
-  bool sampled_in_float = false;  ///< whether whole rays were sampled in packets, in binary32
+  bool sampled_in_float = false;  ///< true if whole rays were sampled in packets, in binary32
 
   // The following members are set by the exact method only.
   double largest_error = 0;                 ///< largest error bound or estimate of any pixel
@@ -109,7 +109,7 @@ struct RenderReport {
   std::uint64_t pixels_proved = 0;          ///< with a proved error bound
   std::uint64_t pixels_interpolated = 0;    ///< interpolated from traced neighbors
   std::uint64_t pixels_over_tolerance = 0;  ///< with an error above the tolerance
-  std::uint64_t evaluations = 0;            ///< of the field: cells gathered and points sampled
+  std::uint64_t evaluations = 0;            ///< cells gathered and points sampled
   RuleCounts spans;                         ///< number of spans by rule
   // And by devices only:
   std::uint64_t pixels_in_double = 0;  ///< that were followed again, for want of digits in binary32

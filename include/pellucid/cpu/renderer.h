@@ -34,7 +34,7 @@ class RunningFrame {
 
   /// Progress of the frame.
   struct State {
-    double fraction = 0;  ///< of the pixels that are final
+    double fraction = 0;  ///< share of the pixels that are final
     /// The finest level of RenderOptions::preview that is complete; -1: none is yet. Level n has
     /// every 2ⁿ-th pixel along each axis; 0 is the image.
     int level = -1;

@@ -69,8 +69,8 @@ struct PixelLimits {
 /// A pixel as images hold it.
 struct StoredPixel {
   float color[4] = {};  ///< premultiplied linear RGBA
-  float depth = 0;      ///< of half of the opacity
-  double error = 0;     ///< of any channel, with the rounding to binary32
+  float depth = 0;      ///< depth of half of the opacity
+  double error = 0;     ///< error of any channel, with the rounding to binary32
   bool proved = false;
 
   /// Returns the error as images hold it: not below what it is.

@@ -17,7 +17,7 @@ struct RuleCounts {
   std::uint64_t lines = 0;      ///< cells or parts of cells with a line in place of the data
   std::uint64_t closed = 0;     ///< cells in closed form: exact depth, mean or linear color
   std::uint64_t panels = 0;     ///< cells that needed Gauß panels
-  std::uint64_t in_double = 0;  ///< of the above, those that needed binary64
+  std::uint64_t in_double = 0;  ///< number of the above that needed binary64
 
   PELLUCID_HD constexpr RuleCounts& operator+=(const RuleCounts& other) noexcept {
     skipped += other.skipped;
@@ -60,8 +60,8 @@ struct RayResult {
   /// unknown.
   float neighbor_deviation = std::numeric_limits<float>::infinity(), longest_step = 0;
   RayStatus status = RayStatus::followed;
-  bool proved = false;   ///< whether `error` is a proved bound, not an estimate
-  long evaluations = 0;  ///< of the field: cells gathered and points sampled
+  bool proved = false;   ///< true if `error` is a proved bound, not an estimate
+  long evaluations = 0;  ///< cells gathered and points sampled
   RuleCounts spans;
 };
 

@@ -8,7 +8,7 @@ namespace pellucid {
 
 /// Position of a number on an axis.
 struct Tick {
-  double share = 0;  ///< of the way along the axis
+  double share = 0;  ///< share of the way along the axis
   std::string label;
 };
 

@@ -23,7 +23,7 @@ struct DifferenceStatistics {
 struct ImageDifference {
   std::array<DifferenceStatistics, 4> channel;  ///< red, green, blue, alpha
   DifferenceStatistics all;                     ///< over the four together
-  int column = 0, row = 0;  ///< where the largest difference is; the first in reading order
+  int column = 0, row = 0;  ///< pixel of the largest difference; the first in reading order
 };
 
 /// Compares images of premultiplied linear RGBA. Throws Error where the sizes differ.
@@ -35,7 +35,7 @@ struct ErrorCheck {
   std::size_t over = 0;     ///< differ by more than the errors allow, or are not finite
   std::size_t unknown = 0;  ///< with an error that is infinite or not a number: never over
   std::size_t proved = 0;   ///< whose error is a proved bound
-  int column = 0, row = 0;  ///< where the difference exceeds its error by most, or comes closest
+  int column = 0, row = 0;  ///< pixel whose difference exceeds its error by most, or comes closest
   double difference = 0, error = 0;  ///< there
 
   /// error / difference over the pixels that differ and whose error is known; infinite where there

@@ -30,7 +30,7 @@ struct VolumeContent {
   /// Labels on the same grid that choose another function; may be null.
   std::shared_ptr<const LabelMask> mask{};
 
-  bool operator==(const VolumeContent&) const = default;  ///< whether it is the same objects
+  bool operator==(const VolumeContent&) const = default;  ///< true for the same objects
 };
 
 /// Several fields on one grid with a function of all of them.
@@ -38,7 +38,7 @@ struct ChannelsContent {
   std::shared_ptr<const Channels> channels;
   std::shared_ptr<const MultivariateTransferFunction> transfer_function;
 
-  bool operator==(const ChannelsContent&) const = default;  ///< whether it is the same objects
+  bool operator==(const ChannelsContent&) const = default;  ///< true for the same objects
 };
 
 /// A function of one variable or of several.
@@ -59,7 +59,7 @@ struct MeshContent {
     return multivariate_in(transfer_function);
   }
 
-  bool operator==(const MeshContent&) const = default;  ///< whether it is the same objects
+  bool operator==(const MeshContent&) const = default;  ///< true for the same objects
 };
 
 /// A field of one's own, with a function of one or of all of its variables. Its layer has no
@@ -74,7 +74,7 @@ struct SourceContent {
     return multivariate_in(transfer_function);
   }
 
-  bool operator==(const SourceContent&) const = default;  ///< whether it is the same objects
+  bool operator==(const SourceContent&) const = default;  ///< true for the same objects
 };
 
 /// A segmentation with the look of its labels.
@@ -82,7 +82,7 @@ struct LabelContent {
   std::shared_ptr<const LabelVolume> labels;
   std::shared_ptr<const LabelTable> table;
 
-  bool operator==(const LabelContent&) const = default;  ///< whether it is the same objects
+  bool operator==(const LabelContent&) const = default;  ///< true for the same objects
 };
 
 using LayerContent =

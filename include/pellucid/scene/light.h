@@ -72,7 +72,7 @@ struct Shading {
   GradientKind gradient = GradientKind::smooth;
   /// g0 as a share of the range of the data per voxel, of the medium and of surfaces; >= 0.
   std::optional<double> flatness{};
-  int channel = 0;  ///< of several variables, the one whose gradient it is
+  int channel = 0;  ///< variable whose gradient it is, of several
   /// g0 of the medium, in data units per world length; >= 0.
   std::optional<double> flat_gradient{};
 

@@ -22,8 +22,8 @@ struct LookName {
 
 /// Default look of a volume or a mesh.
 struct Look {
-  std::string name;    ///< of looks() or looks_of_meshes()
-  std::string reason;  ///< what it was chosen for, of the data; empty where it was asked for
+  std::string name;    ///< name in looks() or looks_of_meshes()
+  std::string reason;  ///< facts of the data for which it was chosen; empty where it was asked for
   /// True if the values are labels: of them default_label_table() makes colors, and nothing else
   /// here counts.
   bool as_labels = false;

@@ -19,7 +19,7 @@ struct Preset {
   /// True if values are Hounsfield units and lengths millimetres. Otherwise the preset is relative
   /// to the data's range and the mean chord of the data's box.
   bool hounsfield;
-  bool lit;  ///< whether it is made for data in light: the program adds a default Shading
+  bool lit;  ///< true if it is made for data in light: the program adds a default Shading
 };
 
 /// Returns all presets in the order in which they are listed.

@@ -106,8 +106,8 @@ struct Integration {
 /// matter, except among projected ones (Layer::projection).
 struct Scene {
   std::vector<Layer> layers;
-  std::vector<Clip> clips;             ///< of all layers; what all of them keep is shown
-  std::vector<Light> lights{Light{}};  ///< of all layers that have a shading
+  std::vector<Clip> clips;             ///< for all layers; what all of them keep is shown
+  std::vector<Light> lights{Light{}};  ///< for all layers that have a shading
   Camera camera;
   ImageSize size;
   /// A pixel is the mean of samples × samples rays through the centres of its equal parts.

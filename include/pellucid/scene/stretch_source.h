@@ -81,7 +81,7 @@ class StretchSource {
     /// World length of the finest detail, in which flatness and gradient opacity count
     /// (voxel_of()).
     double voxel_size = 1;
-    bool has_gradient = false, has_magnitude = false;  ///< whether stretches can have them
+    bool has_gradient = false, has_magnitude = false;  ///< true if stretches can have them
   };
 
   virtual ~StretchSource() = default;

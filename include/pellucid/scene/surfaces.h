@@ -18,7 +18,7 @@ struct Isosurface {
   Rgb<double> color{1, 1, 1};
   /// Gives the color by a variable of the layer in place of `color`; may be null.
   std::shared_ptr<const TransferFunction> colors{};
-  int channel = 0;        ///< of several variables, the one that has the value
+  int channel = 0;        ///< variable that has the value, of several
   int color_channel = 0;  ///< and the one that `colors` sees
 
   bool operator==(const Isosurface&) const = default;
@@ -32,7 +32,7 @@ struct Slice {
   double opacity = 1;            ///< in [0, 1]
   /// The color of each value; null: that of the layer's function of one variable.
   std::shared_ptr<const TransferFunction> colors{};
-  int channel = 0;  ///< of several variables, the one that is shown
+  int channel = 0;  ///< variable that is shown, of several
 
   bool operator==(const Slice&) const = default;
 };

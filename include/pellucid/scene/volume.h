@@ -56,7 +56,7 @@ struct GridPlacement {
 
 /// Properties of the data that are known before rendering.
 struct VolumeStatistics {
-  double minimum = 0, maximum = 0;  ///< of the finite values; both 0 if there is none
+  double minimum = 0, maximum = 0;  ///< range of the finite values; both 0 if there is none
   std::size_t finite = 0, nan = 0, infinite = 0;
 };
 
