@@ -23,7 +23,7 @@ struct ChannelArguments {
   void add_to(CommandLine& app);
   /// One volume alone, whose channels have the names that they have in a scene.
   bool is_one_volume() const { return inputs.size() == 1 && channels.empty(); }
-  /// The inputs, for messages.
+  /// Returns the inputs, for messages.
   std::string source_text() const;
 };
 
@@ -48,7 +48,7 @@ struct LoadedChannels {
 };
 LoadedChannels load_channels(const ChannelSelection& selection, int threads, bool quiet = false);
 
-/// The files that are read, to be kept from being written.
+/// Returns the files that are read, to be kept from being written.
 std::vector<NamedFile> data_files(const std::vector<ChannelSource>& sources);
 
 }  // namespace pellucid::cli

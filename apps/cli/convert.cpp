@@ -120,7 +120,7 @@ Json json_report(const ConvertArguments& arguments, const Converted& converted) 
   return json;
 }
 
-/// All components of a file, or the one that is chosen.
+/// Returns all components of a file, or the one that is chosen.
 NamedComponents read_input(const ConvertArguments& arguments) {
   FieldSource source = volume_source(arguments);
   set_notes(source, arguments.quiet);

@@ -28,7 +28,7 @@ class CsvTable {
   std::string_view text(std::size_t row, std::size_t column) const noexcept {
     return cells_[row * columns_.size() + column];
   }
-  /// A finite number, rounded to T. Throws Error that names file, line and column.
+  /// Returns a finite number, rounded to T. Throws Error that names file, line and column.
   template <class T>
   T number(std::size_t row, std::size_t column) const;
   /// Numbers separated by ';'. An empty cell is an empty list.

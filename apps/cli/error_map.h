@@ -7,8 +7,8 @@
 
 namespace pellucid::cli {
 
-/// An opaque picture of error / tolerance, of an image with an error: dark at 0 and bright at 1,
-/// along viridis where the error is proved, and in grey of the same luminance where it is
+/// Returns an opaque picture of error / tolerance, of an image with an error: dark at 0 and bright
+/// at 1, along viridis where the error is proved, and in grey of the same luminance where it is
 /// estimated; red where the error is above the tolerance or not a number.
 Image error_picture(const Image& image, double tolerance);
 

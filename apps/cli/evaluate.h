@@ -33,7 +33,7 @@ EvaluateKind gaussian_segment_kniss_kind();
 EvaluateKind gaussian_mixture_segment_kind();
 EvaluateKind gaussian_mixture_segment_kniss_kind();
 
-/// A number that must not be negative: an extinction, a length.
+/// Returns a number that must not be negative: an extinction, a length.
 template <class T>
 T non_negative(const CsvTable& table, std::size_t row, std::size_t column);
 
@@ -42,8 +42,8 @@ template <class T>
 std::vector<T> list_of(const CsvTable& table, std::size_t row, std::size_t column,
                        std::size_t count);
 
-/// The checked transfer function of columns value, extinction, red, green, blue; numbers rounded to
-/// T before they are checked.
+/// Returns the checked transfer function of columns value, extinction, red, green, blue; numbers
+/// rounded to T before they are checked.
 template <class T>
 TransferFunction transfer_function_of(const CsvTable& table, std::size_t row,
                                       const std::array<std::size_t, 5>& columns);

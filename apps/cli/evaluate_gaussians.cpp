@@ -44,7 +44,7 @@ Ends<T> ends_of(const CsvTable& table, std::size_t row, std::size_t front, std::
   return ends;
 }
 
-/// A primitive of all channels, checked; K by rows. `what` is for messages.
+/// Returns a primitive of all channels, checked; K by rows. `what` is for messages.
 template <class T>
 Gaussian<T> primitive_of(const std::string& what, const Ends<T>& ends, const std::vector<T>& matrix,
                          const std::vector<T>& center, T peak, Rgb<T> color) {
@@ -123,7 +123,7 @@ void segment_row(const CsvTable& table, const std::vector<std::size_t>& columns,
   outputs = {wide(mean_density(rule, g, ends.v1, ends.v2)), wide(s.optical_depth), wide(s.opacity)};
 }
 
-/// The sum's primitives.
+/// Returns the sum's primitives.
 template <class T>
 std::vector<Gaussian<T>> mixture_of(const CsvTable& table, const std::vector<std::size_t>& columns,
                                     std::size_t row, const Ends<T>& ends, T length) {

@@ -77,7 +77,7 @@ ValueRange range_of(const MeshArray& array, int component) {
   return range;
 }
 
-/// The mesh of the cells alone. A mesh has a channel, so here is one of nothing.
+/// Returns the mesh of the cells alone. A mesh has a channel, so here is one of nothing.
 std::shared_ptr<const MeshChannels> cells_alone(UnstructuredGrid grid) {
   const std::string none = "none";
   grid.arrays = {{none, Centering::cell, 1, DataArray<std::uint8_t>(grid.shapes.size())}};

@@ -44,8 +44,8 @@ FieldSource field_source(const std::string& input, const VolumeOptions& options)
 /// Has notes on what is read printed, unless it is to be quiet.
 void set_notes(FieldSource& field, bool quiet);
 void set_notes(std::vector<ChannelSource>& channels, bool quiet);
-/// A channel of "NAME=SOURCE". Of a file the options say the rest; a component in brackets goes
-/// before theirs. Throws Error.
+/// Returns a channel of "NAME=SOURCE". Of a file the options say the rest; a component in brackets
+/// goes before theirs. Throws Error.
 ChannelSource channel_source(const std::string& text, const VolumeOptions& options);
 /// Throws UsageError where an option is used, but none of the channels is a file.
 void refuse_options_without_files(const std::vector<ChannelSource>& channels,

@@ -16,7 +16,7 @@ struct LightArguments {
   std::vector<std::string> lights, isosurfaces, slices;
 
   void add_to(CommandLine& command);
-  /// The name of an option that is about one layer and was given; empty: there is none.
+  /// Returns the name of an option that is about one layer and was given; empty: there is none.
   std::string option_of_a_layer() const;
   /// Puts the surfaces and the shading over what the layer says. Throws UsageError.
   void apply(LayerDescription& layer) const;

@@ -33,7 +33,7 @@ std::string mesh_input_help();
 bool is_mesh(const std::string& input, const MeshOptions& options);
 /// Throws UsageError.
 MeshSource mesh_source(const std::string& input, const MeshOptions& options);
-/// The files that are read, to be kept from being written.
+/// Returns the files that are read, to be kept from being written.
 std::vector<NamedFile> data_files(const MeshSource& source);
 
 }  // namespace pellucid::cli

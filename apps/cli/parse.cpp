@@ -229,7 +229,7 @@ Rgb<double> parse_color(const std::string& option, const std::string& text) {
 
 namespace {
 
-/// The parts of a text between colons.
+/// Returns the parts of a text between colons.
 std::vector<std::string> parts_of(const std::string& text) {
   std::vector<std::string> parts(1);
   for (const char c : text) {

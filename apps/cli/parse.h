@@ -25,7 +25,8 @@ class OverTolerance : public Error {
   using Error::Error;
 };
 
-/// The text as one line that a terminal can show: line breaks and control characters become spaces.
+/// Returns the text as one line that a terminal can show: line breaks and control characters become
+/// spaces.
 std::string one_line(std::string_view text);
 /// ASCII letters only.
 std::string lower_case(std::string text);
@@ -41,14 +42,14 @@ std::vector<int> parse_bins(const std::string& option, const std::string& text, 
 std::array<double, 2> parse_range(const std::string& option, const std::string& text);
 /// LOW:HIGH or LOW,HIGH, values or percentages of the data's values, as in 2%:98%.
 RangeEnds parse_value_range(const std::string& option, const std::string& text);
-/// A finite positive number, or the quotient of two: "0.001", "1e-4", "1/512".
+/// Returns a finite positive number, or the quotient of two: "0.001", "1e-4", "1/512".
 double parse_tolerance(const std::string& option, const std::string& text);
 /// A tolerance of a picture, or the share of its largest channel that it is.
 struct PictureTolerance {
   double value = 0;
   bool is_share = false;
 };
-/// A tolerance as above; or percent, "1%" up to "100%", which is a share.
+/// Returns a tolerance as above; or percent, "1%" up to "100%", which is a share.
 PictureTolerance parse_picture_tolerance(const std::string& option, const std::string& text);
 /// "plane:X,Y,Z,NX,NY,NZ", "box:X0,Y0,Z0,X1,Y1,Z1", "sphere:X,Y,Z,R" or
 /// "cylinder:X0,Y0,Z0,X1,Y1,Z1,R"; "-" in front cuts the shape away.

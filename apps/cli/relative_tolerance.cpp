@@ -20,7 +20,7 @@ double largest_channel(const Image& image) {
 
 namespace {
 
-/// The nearest pixels of a backdrop.
+/// Returns the nearest pixels of a backdrop.
 std::shared_ptr<const Image> shrunk(const Image& backdrop, ImageSize size) {
   auto small = std::make_shared<Image>();
   small->width = size.width;

@@ -9,7 +9,8 @@
 
 namespace pellucid::cli {
 
-/// The largest channel of premultiplied RGBA of any pixel: the picture's own range is from 0 to it.
+/// Returns the largest channel of premultiplied RGBA of any pixel: the picture's own range is from
+/// 0 to it.
 double largest_channel(const Image& image);
 
 /// Returns about the largest channel that the scene's picture will have, from renderings of at most

@@ -90,7 +90,7 @@ struct PreparedScene {
   }
 };
 
-/// All that is read as data, as it was given.
+/// Returns all that is read as data, as it was given.
 std::string source_text(const RenderArguments& arguments);
 
 void add_render_options(CommandLine& command, RenderArguments& arguments);
@@ -148,9 +148,9 @@ struct RenderedPicture {
   std::string ranks_json;           ///< an object of --json; empty: one process
   std::vector<std::string> notes{};
 };
-/// The options of drafts, which a signal ends.
+/// Returns the options of drafts, which a signal ends.
 RenderOptions quiet_options_of(const RenderArguments& arguments);
-/// The options of a frame.
+/// Returns the options of a frame.
 RenderOptions options_of(const RenderArguments& arguments, const PreparedScene& prepared);
 /// Shows colors at the points of INPUT as they are if nothing else is asked for; `notes` get a
 /// line. Throws Error.

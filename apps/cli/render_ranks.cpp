@@ -49,7 +49,7 @@ void refuse_arguments(const RenderArguments& arguments) {
   if (!arguments.renders()) throw UsageError("--ranks: nothing to render; give -o FILE.png");
 }
 
-/// The largest part of the memory that this process has had at any time, in MiB.
+/// Returns the largest part of the memory that this process has had at any time, in MiB.
 double most_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -8,7 +8,7 @@
 
 namespace pellucid::cli {
 
-/// The scene as JSON, with the paths of its files as seen from the folder of `target`.
+/// Returns the scene as JSON, with the paths of its files as seen from the folder of `target`.
 std::string scene_text(SceneDescription description, const std::filesystem::path& target);
 
 }  // namespace pellucid::cli

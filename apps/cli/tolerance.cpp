@@ -10,7 +10,7 @@ namespace pellucid::cli {
 
 namespace {
 
-/// The number upwards to two digits, so that as a tolerance it is not below the number.
+/// Returns the number upwards to two digits, so that as a tolerance it is not below the number.
 double rounded_up(double x) {
   const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1);
   return std::ceil(x / unit) * unit;

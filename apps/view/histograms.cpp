@@ -17,7 +17,7 @@ int bins_of(std::size_t axes) {
   return axes == 1 ? 256 : 128;
 }
 
-/// The mean of a channel in a tetrahedron.
+/// Returns the mean of a channel in a tetrahedron.
 double mean_in(const MeshChannels& mesh, int channel, std::size_t tetrahedron) {
   if (mesh[channel].centering == Centering::cell) return mesh.value(channel, tetrahedron);
   double sum = 0;
@@ -83,7 +83,7 @@ HistogramAxis middle_axis(const Channels& channels, int channel, const ParallelF
   return axis;
 }
 
-/// The same of a mesh.
+/// Returns the same of a mesh.
 HistogramAxis middle_axis(const MeshChannels& mesh, int channel) {
   std::vector<double> values;
   for (std::size_t t = 0; t < mesh.mesh().tetrahedra().size(); ++t) {
@@ -151,7 +151,7 @@ JointHistogram count_grid(const Channels& channels, const std::vector<int>& whic
   return joint_histogram(channels, which, axes, parallel);
 }
 
-/// The channels of a grid; none of a mesh.
+/// Returns the channels of a grid; none of a mesh.
 std::optional<Channels> grid_channels(const Layer& layer) {
   if (const auto* volume = std::get_if<VolumeContent>(&layer.content)) {
     return Channels({{std::string(field_channel), "", volume->volume}});

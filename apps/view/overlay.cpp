@@ -64,7 +64,7 @@ void add_circle(const Vec3<double>& middle, const Vec3<double>& normal, double r
   for (int i = 0; i < corners; ++i) shape.lines.push_back({corner(i), corner(i + 1)});
 }
 
-/// The point of the plane that is nearest to the middle of the data.
+/// Returns the point of the plane that is nearest to the middle of the data.
 Vec3<double> plane_middle(const ClipPlane& plane, const Surroundings& around) {
   const Vec3<double> normal = normalized(plane.normal);
   return around.middle - normal * dot(around.middle - plane.point, normal);

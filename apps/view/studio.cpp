@@ -80,7 +80,7 @@ Json answered_json(const std::map<PageId, std::uint64_t>& answered) {
   return json;
 }
 
-/// Half of the diagonal of a box around the data, and how far away its far side may be.
+/// Returns half of the diagonal of a box around the data, and how far away its far side may be.
 double reach_of(const Scene& scene) {
   const std::array<Vec3<double>, 8> corners = world_corners(scene);
   double reach = 0;

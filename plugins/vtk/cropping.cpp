@@ -30,7 +30,7 @@ bool all_of(const CroppedBox& box, const Visit& visit) {
   return true;
 }
 
-/// The largest box from a region on, along x, then y, then z.
+/// Returns the largest box from a region on, along x, then y, then z.
 CroppedBox grown(const Regions& left, int x, int y, int z) {
   CroppedBox box{{x, y, z}, {x, y, z}};
   for (std::size_t axis = 0; axis < 3; ++axis) {

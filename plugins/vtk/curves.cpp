@@ -123,7 +123,7 @@ struct Limits {
   Rgb<double> below, above;
 };
 
-/// The value at x on the stretch in front of point `index`.
+/// Returns the value at x on the stretch in front of point `index`.
 Rgb<double> on_stretch(const Curve& curve, std::size_t index, double x) {
   if (index == 0) return curve.front().y;
   if (index == curve.size()) return curve.back().y;

@@ -75,7 +75,8 @@ struct Component {
     return std::is_same_v<Value, float> || std::is_same_v<Value, double> ||
            (std::is_integral_v<Value> && sizeof(Value) <= 4);
   }
-  /// The type of the scene's values: char and long have another name than the type of their size.
+  /// Returns the type of the scene's values: char and long have another name than the type of their
+  /// size.
   template <class Value>
   static auto kept_type() {
     if constexpr (std::is_floating_point_v<Value>) {
@@ -155,7 +156,7 @@ void turn_coordinates(Volume::Description& grid, const std::array<bool, 3>& desc
   }
 }
 
-/// The values in the other order along some axes.
+/// Returns the values in the other order along some axes.
 VolumeData turned(const VolumeData& values, const std::array<int, 3>& sides,
                   const std::array<bool, 3>& backwards) {
   return std::visit(
@@ -180,7 +181,7 @@ VolumeData turned(const VolumeData& values, const std::array<int, 3>& sides,
       values);
 }
 
-/// The memory by which a changed array is known: of other layouts none.
+/// Returns the memory by which a changed array is known: of other layouts none.
 const void* memory_of(vtkDataArray& array) {
   return array.HasStandardMemoryLayout() ? array.GetVoidPointer(0) : nullptr;
 }

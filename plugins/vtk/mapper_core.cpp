@@ -103,7 +103,7 @@ float depth_of(float opacity) {
   return static_cast<float>(-std::log1p(-std::max(double{opacity}, 0.0)));
 }
 
-/// The scene as an opaque shape: where rays meet its data.
+/// Returns the scene as an opaque shape: where rays meet its data.
 Scene shape_of(const Scene& scene) {
   static const auto opaque = std::make_shared<const TransferFunction>(
       std::vector<TransferFunction::Point>{{0, 1, {0, 0, 0}}});

@@ -120,7 +120,7 @@ class MapperCore {
                    const MakeLayers& make_layers);
   Image picture(const Scene& scene, vtkRenderer& renderer, double seconds);
   Image picture_in_time(const Scene& scene, vtkRenderer& renderer, double seconds);
-  /// The tolerance of what the finish is applied to.
+  /// Returns the tolerance of what the finish is applied to.
   double inner_tolerance() const noexcept { return settings.tolerance / finish.growth(); }
   void take(const RenderReport& report);
   void finish_picture(const Scene& scene, Image& image);

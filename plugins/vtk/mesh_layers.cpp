@@ -25,7 +25,7 @@
 namespace pellucid::plugin {
 namespace {
 
-/// The grid's cells with these values alone: arrays that are not shown need not be copied.
+/// Returns the grid's cells with these values alone: arrays that are not shown need not be copied.
 vtkSmartPointer<vtkUnstructuredGrid> with_values(vtkUnstructuredGrid& grid, vtkDataArray& array,
                                                  bool of_cells) {
   auto bare = vtkSmartPointer<vtkUnstructuredGrid>::New();

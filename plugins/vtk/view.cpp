@@ -125,8 +125,8 @@ void refuse_others(vtkRenderer& renderer, vtkCamera& camera) {
   if (pixel[0] != pixel[1]) throw Error("renderer: its pixels are not square; set PixelAspect 1 1");
 }
 
-/// A head light as the GPU mapper has it: alone it is at the camera, also of parallel rays; beside
-/// others it shines along the camera's axis.
+/// Returns a head light as the GPU mapper has it: alone it is at the camera, also of parallel rays;
+/// beside others it shines along the camera's axis.
 std::variant<HeadLight, DirectionalLight, PointLight> head_light(vtkCamera& camera, int shining,
                                                                  bool is_lit, Notes& notes) {
   if (shining > 1) return DirectionalLight{vector_of(camera.GetDirectionOfProjection())};

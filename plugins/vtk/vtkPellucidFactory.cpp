@@ -20,7 +20,7 @@ namespace {
 constexpr const char* gpu = "vtkGPUVolumeRayCastMapper";
 constexpr const char* tetrahedra = "vtkProjectedTetrahedraMapper";
 
-/// The registered factory of this plug-in; null: none.
+/// Returns the registered factory of this plug-in; null: none.
 vtkPellucidFactory* registered() {
   vtkObjectFactoryCollection* const all = vtkObjectFactory::GetRegisteredFactories();
   for (int i = 0; i < all->GetNumberOfItems(); ++i) {

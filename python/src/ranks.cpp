@@ -17,7 +17,7 @@ namespace pellucid::python {
 
 namespace {
 
-/// The tree of the boxes that the ranks have.
+/// Returns the tree of the boxes that the ranks have.
 BrickTree tree_of(Communicator& ranks, const Box<double>& own) {
   const auto count = static_cast<std::size_t>(ranks.size());
   std::vector<double> numbers(6 * count, 0);

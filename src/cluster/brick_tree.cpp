@@ -65,7 +65,7 @@ class BrickTree::Assembler {
  private:
   const Box<double>& box(int brick) const { return boxes_[static_cast<std::size_t>(brick)]; }
 
-  /// The plane that leaves both sides as equal as possible.
+  /// Returns the plane that leaves both sides as equal as possible.
   RayRegion::HalfSpace separate(const std::vector<int>& bricks, std::vector<int>& below,
                                 std::vector<int>& above) const {
     std::size_t best = 0;

@@ -91,7 +91,7 @@ class Pixels {
   double most_error(double of_ray) const noexcept {
     return of_ray + reserved_ + 2 * most_ * 0x1p-24;
   }
-  /// The pixel over the backdrop, with all that it may be off by.
+  /// Returns the pixel over the backdrop, with all that it may be off by.
   Pixel at(std::size_t index) const {
     Pixel pixel;
     visit_rays(index, [&](std::size_t ray) {

@@ -90,7 +90,7 @@ void check_functions(const SceneDescription& scene) {
   }
 }
 
-/// A checksum of what ranks must have alike before they work together, without what
+/// Returns a checksum of what ranks must have alike before they work together, without what
 /// render() compares by name, and without paths, which may differ from machine to machine.
 std::string checksum(SceneDescription scene, BrickBalance balance) {
   const bool has_camera = scene.camera.has_value();
@@ -195,7 +195,7 @@ class BrickLoader {
                                   : extent_of(*layers_[index]);
   }
 
-  /// The layers that are seen; all if none is.
+  /// Returns the layers that are seen; all if none is.
   std::vector<std::size_t> seen_layers() const {
     const bool any = std::ranges::any_of(description_.layers, &LayerDescription::visible);
     std::vector<std::size_t> seen;
@@ -279,7 +279,7 @@ class BrickLoader {
     return result;
   }
 
-  /// The map to the frame from a grid.
+  /// Returns the map to the frame from a grid.
   Affine<double> frame_from(std::size_t index) const {
     const Affine<double> frame_from_world = inverse(frame_.world_from_frame);
     const Affine<double> map = extent(index).world_from_data;

@@ -41,8 +41,8 @@ void composite_over(void* from, void* to, int* count, MPI_Datatype* /*type*/) {
   for (int i = 0; i < *count; ++i) behind[i] = over(front[i], behind[i]);
 }
 
-/// The pixels that are not empty: the number of runs of them, the first pixel and the length of
-/// each run, and the pixels.
+/// Returns the pixels that are not empty: the number of runs of them, the first pixel and the
+/// length of each run, and the pixels.
 std::vector<std::byte> packed(std::span<const RayPixel> pixels) {
   std::vector<std::int32_t> runs{0};
   std::size_t count = 0;

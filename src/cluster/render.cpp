@@ -65,8 +65,8 @@ void check_frame(Communicator& ranks, const BrickTree& tree, const Scene& scene,
        {"the bricks' checksum", std::to_string(sum.value())}});
 }
 
-/// The most bricks that rays of the frame meet, as every fourth tells; at least 1. What a ray may
-/// be off by does not rest on it (RayRegion::allowance).
+/// Returns the most bricks that rays of the frame meet, as every fourth tells; at least 1. What a
+/// ray may be off by does not rest on it (RayRegion::allowance).
 int most_bricks(const BrickTree& tree, const Scene& rays) {
   constexpr int apart = 4;
   const CameraFrame<double> camera = make_camera_frame(rays.camera, rays.size);
@@ -116,7 +116,7 @@ void finish_together(Communicator& ranks, FrameWatch& watch, const std::string& 
   });
 }
 
-/// The options of the own part of the frame.
+/// Returns the options of the own part of the frame.
 RenderOptions options_of_part(const BrickTree& tree, const RenderOptions& options, int most,
                               int rank, FrameWatch& watch) {
   RayRegion region = tree.region(rank);

@@ -26,7 +26,7 @@ double in_steps(double allowance) {
   return std::exp2(std::floor(std::log2(allowance) * steps_of_two) / steps_of_two);
 }
 
-/// The numbers of rank 0 on all ranks.
+/// Returns the numbers of rank 0 on all ranks.
 std::vector<std::size_t> sent(Communicator& ranks, const std::vector<std::size_t>& numbers) {
   std::array<double, 1> count{ranks.rank() == 0 ? static_cast<double>(numbers.size()) : 0};
   ranks.reduce_all(count, Communicator::Reduction::maximum);
@@ -88,7 +88,7 @@ class SecondLook {
   }
   double error_of(std::size_t ray) const { return double{parts_.own[ray].error}; }
 
-  /// The transparency of all that is in front of this rank's part.
+  /// Returns the transparency of all that is in front of this rank's part.
   std::vector<double> transparency_in_front() {
     std::vector<RayPixel> pixels;
     for (const std::size_t ray : rays_) pixels.push_back(parts_.own[ray]);

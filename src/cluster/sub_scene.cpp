@@ -11,7 +11,7 @@
 namespace pellucid {
 namespace {
 
-/// The map that does `first`, then `then`.
+/// Returns the map that does `first`, then `then`.
 Affine<double> composed(const Affine<double>& then, const Affine<double>& first) {
   Affine<double> both;
   for (int a = 0; a < 3; ++a) both.matrix.column[a] = then.vector(first.matrix.column[a]);
@@ -53,7 +53,7 @@ LayerContent changed(const LayerContent& content, const Change& change) {
   return content;
 }
 
-/// The size of a voxel of a grid's layer in its place.
+/// Returns the size of a voxel of a grid's layer in its place.
 double placed_voxel(const Layer& layer) {
   Layer placed;
   const Volume moved = grid_of(layer)->moved(layer.transform);
@@ -183,7 +183,7 @@ Scene sub_scene(const Scene& whole, const BrickTree& tree, int brick) {
 
 namespace {
 
-/// The mean side of a box along the world's axes around the layers of all ranks.
+/// Returns the mean side of a box along the world's axes around the layers of all ranks.
 double whole_side(Communicator& ranks, const Layer& own) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<double> lower(3, infinity), upper(3, -infinity);

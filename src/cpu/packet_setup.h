@@ -14,17 +14,17 @@
 
 namespace pellucid {
 
-/// The set that is asked for, else the best one that the machine has. Throws Error where it has not
-/// that one.
+/// Returns the set that is asked for, else the best one that the machine has. Throws Error where it
+/// has not that one.
 InstructionSet packet_instruction_set(std::optional<InstructionSet> wanted);
 
-/// The largest magnitude of the data.
+/// Returns the largest magnitude of the data.
 double largest_value(const VolumeStatistics& data);
 inline double largest_value(const Volume& volume) {
   return largest_value(volume.statistics());
 }
 
-/// The longest way through the volume, from corner to corner, world length.
+/// Returns the longest way through the volume, from corner to corner, world length.
 double diagonal(const Volume& volume);
 
 /// Returns whether squares of the number and of its thousandths stay far from where binary32 ends.

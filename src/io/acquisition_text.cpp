@@ -22,7 +22,7 @@ using scene_json::printable;
 
 namespace {
 
-/// The value of the first line whose key ends with one of these.
+/// Returns the value of the first line whose key ends with one of these.
 std::string_view setting(std::string_view text, std::initializer_list<std::string_view> keys) {
   for (const std::string_view key : keys) {
     for (std::size_t at = text.find(key); at != std::string_view::npos;

@@ -23,12 +23,12 @@ struct ArrayAxes {
 /// components; "czyx". Returns them in small letters, t as c. Throws Error.
 std::string checked_axes(const std::string& letters);
 
-/// The axes of an array of this shape. Axes of one entry in front and behind do not count. Three
-/// axes are z, y, x. Of four the components are the first or the last: the one that has at most 4
-/// entries, else at most 8; where both have at most 4, the last, unless all axes are short and the
-/// first is the shortest; else the first, or the second where that has at most 4.
-/// `letters` say otherwise (checked_axes). Throws Error that begins with `what`, "a.npy: an array
-/// of shape (3, 4)". Needs pellucid::scene alone.
+/// Returns the axes of an array of this shape. Axes of one entry in front and behind do not count.
+/// Three axes are z, y, x. Of four the components are the first or the last: the one that has at
+/// most 4 entries, else at most 8; where both have at most 4, the last, unless all axes are short
+/// and the first is the shortest; else the first, or the second where that has at most 4. `letters`
+/// say otherwise (checked_axes). Throws Error that begins with `what`, "a.npy: an array of shape
+/// (3, 4)". Needs pellucid::scene alone.
 ArrayAxes array_axes(std::span<const std::int64_t> shape, const std::optional<std::string>& letters,
                      const std::string& what);
 

@@ -39,7 +39,7 @@ std::string_view cut(std::string_view& rest, char separator) {
   return part;
 }
 
-/// The C of "FILE[C]", which is taken off.
+/// Returns the C of "FILE[C]", which is taken off.
 std::optional<int> take_component(std::string_view& text) {
   const std::size_t open = text.rfind('[');
   if (!text.ends_with(']') || open == std::string_view::npos) return std::nullopt;

@@ -21,9 +21,9 @@ namespace pellucid::foreign {
 /// closer: the first is an extinction of nothing, the second one of 13.8 per unit distance.
 inline constexpr double thin_opacity = 1e-12, dense_opacity = 1e-6;
 
-/// A bound on |ln| of the ratio of the depths -ln(1 - α) of two opacities of [lower, upper] that
-/// are at most `difference` apart. The derivative of ln(-ln(1 - α)) is 1/g, g = -(1 - α) ln(1 - α)
-/// is concave, and so smallest at one of the ends.
+/// Returns a bound on |ln| of the ratio of the depths -ln(1 - α) of two opacities of [lower, upper]
+/// that are at most `difference` apart. The derivative of ln(-ln(1 - α)) is 1/g, g = -(1 - α) ln(1
+/// - α) is concave, and so smallest at one of the ends.
 inline double depth_deviation(double lower, double upper, double difference) {
   const auto g = [](double opacity) { return -(1 - opacity) * std::log1p(-opacity); };
   if (!(lower > 0) || !(upper < 1)) return std::numeric_limits<double>::infinity();

@@ -21,7 +21,7 @@ std::size_t size_of(const VolumeData& data) {
   return std::visit([](const auto& values) { return values.size(); }, data);
 }
 
-/// The part of the file that the options want, if it is not all.
+/// Returns the part of the file that the options want, if it is not all.
 std::optional<GridPart> wanted_part(const VolumeFile& file, const ReadOptions& options) {
   if (!options.part) return std::nullopt;
   const GridPart part{file.description.dimensions, options.part(file.description)};
@@ -46,7 +46,7 @@ std::string choices(const VolumeFile& file) {
   return "0 to " + std::to_string(file.components - 1);
 }
 
-/// The component that the options call by its name. Throws Error where there is not one.
+/// Returns the component that the options call by its name. Throws Error where there is not one.
 int named_component(const VolumeFile& file, const std::string& wanted) {
   const std::vector<std::string>& names = file.component_names;
   if (std::ranges::count(names, wanted) == 1) {
@@ -62,7 +62,8 @@ int named_component(const VolumeFile& file, const std::string& wanted) {
                                    ", their numbers " + choices(file)));
 }
 
-/// The component that the options name, or their time; nothing where they name none. Throws Error.
+/// Returns the component that the options name, or their time; nothing where they name none. Throws
+/// Error.
 std::optional<int> chosen_component(const VolumeFile& file, const ReadOptions& options) {
   if (!options.component && options.component_name) {
     return named_component(file, *options.component_name);

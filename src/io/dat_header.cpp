@@ -159,7 +159,7 @@ void read_world(const Fields& fields, const std::string& name, InviwoHeader& hea
   if (is_given) header.world = columns;
 }
 
-/// The keys that are neither read nor known to leave the picture as it is.
+/// Returns the keys that are neither read nor known to leave the picture as it is.
 std::vector<std::string> ignored_keys(const Fields& fields) {
   constexpr std::array known = std::to_array<std::string_view>(
       {"rawfile", "objectfilename", "datfile", "resolution", "dimensions", "dimension", "format",

@@ -50,7 +50,7 @@ void tell(const DicomFolder& folder, const DicomGroup& group, const std::filesys
   }
 }
 
-/// The unit that all slices name; empty where they differ.
+/// Returns the unit that all slices name; empty where they differ.
 std::string unit_of(const std::vector<DicomSlice>& slices) {
   const std::string& unit = slices.front().image->unit;
   const bool same = std::ranges::all_of(

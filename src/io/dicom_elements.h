@@ -28,13 +28,13 @@ struct DicomDataSet {
   std::vector<double> decimals(DicomTag tag) const;
   /// Numbers of eight bytes (FD); empty where there is none or one is not finite.
   std::vector<double> reals(DicomTag tag) const;
-  /// A number of two bytes (US).
+  /// Returns a number of two bytes (US).
   std::optional<int> number(DicomTag tag) const;
-  /// All numbers of two bytes (US) of an element; empty where there is none.
+  /// Returns all numbers of two bytes (US) of an element; empty where there is none.
   std::vector<int> whole_numbers(DicomTag tag) const;
-  /// The tags that an element names (AT); empty where there is none.
+  /// Returns the tags that an element names (AT); empty where there is none.
   std::vector<DicomTag> tags(DicomTag tag) const;
-  /// The first item of a sequence; null where there is none.
+  /// Returns the first item of a sequence; null where there is none.
   const DicomDataSet* item(DicomTag tag) const;
 };
 

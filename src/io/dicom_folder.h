@@ -24,16 +24,16 @@ struct DicomFolder {
   std::vector<DamagedDicomFile> damaged;  ///< left out, in the order of their names
 };
 
-/// The files of a folder, or of the one around a file. Those that cannot be read are left out, and
-/// those of `known` too. Throws Error where `path` itself is one of them.
+/// Returns the files of a folder, or of the one around a file. Those that cannot be read are left
+/// out, and those of `known` too. Throws Error where `path` itself is one of them.
 DicomFolder scan_dicom_folder(const std::filesystem::path& path,
                               const std::vector<DamagedDicomFile>& known = {});
 
 /// "3 files are left out; the first: ..."; empty where none is.
 std::string left_out_text(const std::vector<DamagedDicomFile>& files);
 
-/// The series that is wanted: its number from 1, its UID or the unique end of it; where none is,
-/// the only one, or for a file its own. Throws Error, listing what there is.
+/// Returns the series that is wanted: its number from 1, its UID or the unique end of it; where
+/// none is, the only one, or for a file its own. Throws Error, listing what there is.
 DicomGroup choose_dicom_series(const DicomFolder& folder, const std::filesystem::path& path,
                                const std::optional<std::string>& wanted);
 

@@ -77,11 +77,11 @@ class DamagedDicom : public Error {
   std::vector<DamagedDicomFile> files_;
 };
 
-/// The slices of one file; none where it is no DICOM file, or one without pixels. Throws Error
-/// where its header is damaged or its pixels are cut off.
+/// Returns the slices of one file; none where it is no DICOM file, or one without pixels. Throws
+/// Error where its header is damaged or its pixels are cut off.
 std::vector<DicomSlice> read_dicom_slices(const std::filesystem::path& file);
 
-/// The bytes of one frame, uncompressed.
+/// Returns the bytes of one frame, uncompressed.
 std::uintmax_t dicom_frame_bytes(const DicomFormat& format);
 
 /// Throws Error where an uncompressed image has fewer bytes than so many frames need.

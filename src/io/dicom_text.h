@@ -6,7 +6,7 @@
 
 namespace pellucid {
 
-/// A number in six digits, for messages.
+/// Returns a number in six digits, for messages.
 inline std::string readable_number(double x) {
   constexpr int digits = 6;
   char text[32];

@@ -47,7 +47,7 @@ class Series {
     return std::abs(heights_[i] - heights_[k]) <= same_place_;
   }
 
-  /// The number of slices that stand where the one before them stands.
+  /// Returns the number of slices that stand where the one before them stands.
   std::size_t doubles(const Indices& part) const {
     const Indices sorted = by_height(part);
     std::size_t count = 0;
@@ -57,7 +57,7 @@ class Series {
     return count;
   }
 
-  /// The distances of the slices, in their order along the normal.
+  /// Returns the distances of the slices, in their order along the normal.
   std::vector<double> gaps(const Indices& part) const {
     const Indices sorted = by_height(part);
     std::vector<double> list;
@@ -79,7 +79,8 @@ class Series {
     return rises || falls;
   }
 
-  /// The share of the shorter of the ranges of two parts that both have; below 0 they are apart.
+  /// Returns the share of the shorter of the ranges of two parts that both have; below 0 they are
+  /// apart.
   double overlap(const Indices& one, const Indices& other) const {
     const Indices a = by_height(one), b = by_height(other);
     const double lower = std::max(heights_[a.front()], heights_[b.front()]);
@@ -173,8 +174,8 @@ std::vector<Indices> slices_of(const std::vector<Part>& parts) {
   return list;
 }
 
-/// The first slices at each place by their numbers, the second, and so on, where there are as many
-/// at each; else nothing.
+/// Returns the first slices at each place by their numbers, the second, and so on, where there are
+/// as many at each; else nothing.
 std::vector<Part> parts_by_number(const Series& series, const Part& whole) {
   const Indices sorted = series.by_height(whole.slices);
   std::vector<Indices> places;

@@ -49,8 +49,8 @@ double angle_between(double a, double b) {
   return std::min(difference, 2 * std::numbers::pi - difference);
 }
 
-/// A hue for an end without saturation, of length m, such that the way to the saturated one changes
-/// evenly (Moreland's AdjustHue).
+/// Returns a hue for an end without saturation, of length m, such that the way to the saturated one
+/// changes evenly (Moreland's AdjustHue).
 double adjusted_hue(const Triple<double>& saturated, double m) {
   if (saturated[0] >= m - 0.1) return saturated[2];
   const double spin = saturated[1] * std::sqrt(m * m - saturated[0] * saturated[0]) /

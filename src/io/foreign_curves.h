@@ -57,13 +57,13 @@ T signal_of(const T& light) {
       [](const T& x) { return T(1.055) * power(x, 1 / 2.4) - T(0.055); });
 }
 
-/// The share of the way from one place to another.
+/// Returns the share of the way from one place to another.
 template <class T>
 T way_share(const T& value, double from, double to, bool logarithmic) {
   if (!logarithmic) return ratio(value - T(from), to - from);
   return ratio(logarithm(value) - T(std::log(from)), std::log(to) - std::log(from));
 }
-/// The place at a share of the way.
+/// Returns the place at a share of the way.
 inline double place_at(double share, double from, double to, bool logarithmic) {
   if (!logarithmic) return from + (to - from) * share;
   return std::exp(std::log(from) + (std::log(to) - std::log(from)) * share);
@@ -77,9 +77,9 @@ T limited(const T& value, double largest) {
                                                            : positive;
 }
 
-/// The shape of the way from one node to the next, at the share s in [0,1] of it: 0 at the first
-/// node, 1 at the second. Below the midpoint s is stretched to [0, 1/2], above it to [1/2, 1]; then
-/// with sharpness σ in [0.01, 0.99]
+/// Returns the shape of the way from one node to the next, at the share s in [0,1] of it: 0 at the
+/// first node, 1 at the second. Below the midpoint s is stretched to [0, 1/2], above it to [1/2,
+/// 1]; then with sharpness σ in [0.01, 0.99]
 ///
 ///   s <- (2s)^(1 + 10σ)/2 for s < 1/2 and alike from the other end,
 ///   s <- 3s² - 2s³ + (1 - σ)(2s³ - 3s² + s)   (Hermite with slopes 1 - σ at both ends).
@@ -130,7 +130,7 @@ Triple<T> color_of_light(const Triple<T>& light, ColorEncoding numbers) {
   return color;
 }
 
-/// A color of signals, as they are or as light.
+/// Returns a color of signals, as they are or as light.
 template <class T>
 Triple<T> color_of_signals(const Triple<T>& signals, ColorEncoding numbers) {
   if (numbers == ColorEncoding::linear) return signals;
@@ -171,8 +171,9 @@ Triple<T> light_of_lab(const T& l, const T& a, const T& b) {
           cx * T(0.0557) + cy * T(-0.2040) + cz * T(1.0570)};
 }
 
-/// A control point of VisIt and vtk.js, at a value within x ± width of it; `right` says on which
-/// side of its top. With t from -1 to 1 over its width, the top moved to x + x_bias, the opacity is
+/// Returns a control point of VisIt and vtk.js, at a value within x ± width of it; `right` says on
+/// which side of its top. With t from -1 to 1 over its width, the top moved to x + x_bias, the
+/// opacity is
 ///
 ///   height · (y_bias (1 - t²) + (1 - y_bias) e^(-4t²))      for y_bias < 1,
 ///   height · ((2 - y_bias) (1 - t²) + y_bias - 1)           else.

@@ -76,7 +76,7 @@ void set_shading(const Shading& shading, Function& function);
 /// Fits shading and gradient opacity. Throws Error.
 void fit_light(const Function& function, ImportedTransferFunction& imported);
 
-/// The function as an opacity table within the deviations asked for.
+/// Returns the function as an opacity table within the deviations asked for.
 ImportedTransferFunction fit(const Function& function, const ImportOptions& options);
 
 }  // namespace pellucid::foreign

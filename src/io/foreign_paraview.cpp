@@ -44,7 +44,7 @@ std::string name_of(const Node& map) {
   return name ? name->string() : std::string();
 }
 
-/// The map of that name among several.
+/// Returns the map of that name among several.
 Node chosen(const Node& maps, const std::string& wanted) {
   const std::size_t count = maps.array_size();
   if (count == 0) maps.fail("has no color map in it");

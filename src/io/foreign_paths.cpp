@@ -12,7 +12,8 @@ double middle(const OpacityNode& from, const OpacityNode& to) {
   return place_at(std::clamp(from.midpoint, 0.00001, 0.99999), from.x, to.x, from.logarithmic);
 }
 
-/// The last node at or before the value, of nodes in ascending order; `size` where there is none.
+/// Returns the last node at or before the value, of nodes in ascending order; `size` where there is
+/// none.
 template <class Node>
 std::size_t node_before(const std::vector<Node>& nodes, double value) {
   const auto after = std::upper_bound(nodes.begin(), nodes.end(), value,

@@ -25,13 +25,13 @@ class ColorPath {
  public:
   ColorPath(const ColorNode& from, const ColorNode& to, ColorSpace space, ColorEncoding numbers);
 
-  /// The color where no break of breaks() lies within the value.
+  /// Returns the color where no break of breaks() lies within the value.
   template <class T>
   Triple<T> color(const T& value, const Place& place) const;
   double hue(double value, const Place& place) const;
-  /// The last corner of a way before a value, which is no corner.
+  /// Returns the last corner of a way before a value, which is no corner.
   std::size_t corner(double value) const;
-  /// The values, from one end to the other, between which color() is smooth.
+  /// Returns the values, from one end to the other, between which color() is smooth.
   std::vector<double> breaks() const;
   bool second_half(double value) const { return value > middle_; }
 

@@ -17,13 +17,13 @@ Function read_paraview(const Node& document, const std::string& wanted);
 Function read_slicer(const Node& document);
 Function read_vtk_js(const Node& document);
 Function read_anari(const Node& document);
-/// The legacy text of 3D Slicer.
+/// Returns the legacy text of 3D Slicer.
 Function read_slicer_text(std::string_view text, const std::string& name);
 Function read_color_table(std::string_view text, const std::string& name);
 /// ParaView's color maps or VisIt's volume attributes.
 Function read_xml(std::string_view text, const std::string& name, const std::string& wanted);
 
-/// A number in [0, 1], and a color of three of them.
+/// Returns a number in [0, 1], and a color of three of them.
 double share(const Node& node);
 Rgb<double> color(const Node& node);
 /// [value, …] of four numbers a node: vtkPiecewiseFunction's x, y, midpoint, sharpness.

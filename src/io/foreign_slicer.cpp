@@ -110,7 +110,7 @@ Function read_slicer(const Node& document) {
 
 namespace {
 
-/// A line of the legacy text: a count, and as many numbers.
+/// Returns a line of the legacy text: a count, and as many numbers.
 std::vector<double> counted(std::string_view line, const std::string& where, std::size_t size) {
   const std::vector<std::string_view> list = words(line, " \t\r");
   const double count = list.empty() ? 0 : number_of(list.front(), where);

@@ -7,12 +7,12 @@
 
 namespace pellucid::foreign {
 
-/// A number as messages and notes show it, in three digits.
+/// Returns a number as messages and notes show it, in three digits.
 std::string text_of(double number);
 
-/// The words between these separators, none of them empty.
+/// Returns the words between these separators, none of them empty.
 std::vector<std::string_view> words(std::string_view text, std::string_view separators);
-/// A finite number that fills the word; throws Error that begins with `where`.
+/// Returns a finite number that fills the word; throws Error that begins with `where`.
 double number_of(std::string_view word, const std::string& where);
 
 }  // namespace pellucid::foreign

@@ -64,8 +64,8 @@ using ReadGrid = void(const std::filesystem::path& path, const std::string& arra
 inline constexpr const char* list_grids_name = "pellucid_list_grids_4";
 inline constexpr const char* read_grid_name = "pellucid_read_grid_4";
 
-/// The part of a grid with these sides that is wanted; all of it where none is. Throws Error where
-/// the part is one of another grid.
+/// Returns the part of a grid with these sides that is wanted; all of it where none is. Throws
+/// Error where the part is one of another grid.
 inline GridPart wanted_part(const std::array<std::int64_t, 3>& sides, ComponentRange range) {
   GridPart part{};
   for (std::size_t a = 0; a < 3; ++a) part.dimensions[a] = static_cast<int>(sides[a]);

@@ -49,7 +49,8 @@ inline bool is_truth(hid_t type) {
   return true;
 }
 
-/// The type of the values, "i64" and "u64" among them; nothing where they are no plain numbers.
+/// Returns the type of the values, "i64" and "u64" among them; nothing where they are no plain
+/// numbers.
 inline std::optional<std::string> type_of(hid_t type) {
   const std::size_t bytes = H5Tget_size(type);
   switch (H5Tget_class(type)) {

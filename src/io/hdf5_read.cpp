@@ -27,7 +27,8 @@ namespace pellucid {
 
 namespace {
 
-/// The sides of a dataset along its axes; nothing where they are fewer than three, or none can be.
+/// Returns the sides of a dataset along its axes; nothing where they are fewer than three, or none
+/// can be.
 std::optional<std::vector<std::int64_t>> shape_of(hid_t space) {
   const int rank = H5Sget_simple_extent_ndims(space);
   if (rank < 3) return std::nullopt;
@@ -40,8 +41,8 @@ std::optional<std::vector<std::int64_t>> shape_of(hid_t space) {
   return std::vector<std::int64_t>(sides.begin(), sides.end());
 }
 
-/// The axes by the letters given, by their meaning, or by their places. Nothing where they are
-/// those of no volume. Throws Error for letters that do not fit, and for axes that are others.
+/// Returns the axes by the letters given, by their meaning, or by their places. Nothing where they
+/// are those of no volume. Throws Error for letters that do not fit, and for axes that are others.
 std::optional<VolumeAxes> axes_of(const std::vector<std::int64_t>& shape, const Hdf5Axes& named,
                                   const AxisLetters& letters, GridArray& array) {
   std::optional<ArrayAxes> placed;

@@ -243,7 +243,7 @@ class Finder {
     return pages;
   }
 
-  /// The names of files that a description has beside that of the file itself.
+  /// Returns the names of files that a description has beside that of the file itself.
   std::set<std::string> named_files() const {
     std::set<std::string> names;
     const fs::path& own = stack_.volume.files.front().file;

@@ -84,7 +84,7 @@ void place(const InviwoHeader& header, const std::string& name, Volume::Descript
   placement.origin = turned(header.offset.value_or(all * -0.5)) + world[3] + half_step;
 }
 
-/// The values that stored ones stand for.
+/// Returns the values that stored ones stand for.
 VolumeData mapped(const VolumeData& stored, const InviwoHeader& header, const std::string& name) {
   const auto [from, to] = *header.data_range;
   const auto [first, last] = *header.value_range;

@@ -37,11 +37,11 @@ struct InviwoHeader {
   std::vector<std::string> ignored_keys;  ///< that are not taken into account
 };
 
-/// A side that a header says, as a number. Throws Error where it is no whole number from 1.
+/// Returns a side that a header says, as a number. Throws Error where it is no whole number from 1.
 int inviwo_side(double side, const std::string& name);
 
-/// The values, which with a basis are the centres of its cells; of a vector each component by
-/// itself. `name` is the header's. Throws Error.
+/// Returns the values, which with a basis are the centres of its cells; of a vector each component
+/// by itself. `name` is the header's. Throws Error.
 VolumeFile open_inviwo_values(const InviwoHeader& header, const std::string& name,
                               const ReadOptions& options);
 

@@ -17,7 +17,7 @@ namespace pellucid {
 /// not there.
 MetaImageHeader read_meta_image_header(const std::filesystem::path& path);
 
-/// The grid of a header. Throws Error where its sides are no sizes of a volume.
+/// Returns the grid of a header. Throws Error where its sides are no sizes of a volume.
 Volume::Description describe(const ItkHeader& header, const std::string& name);
 
 /// Position of the values of a NRRD file that are plain, or compressed as ITK does not read them.

@@ -21,7 +21,7 @@ struct JsonFile {
 /// JSON as programs in Python write it: the words NaN, Infinity and -Infinity become strings.
 /// Throws Error with line and column; also for more than 64 levels of nesting.
 JsonFile parse_data_json(std::string_view text, const std::string& name);
-/// The same of a file, of 256 MiB at most.
+/// Returns the same of a file, of 256 MiB at most.
 JsonFile read_data_json(const std::filesystem::path& path);
 
 /// `folder` / `relative`, where a file names `relative`. Throws Error that begins with `name` for a

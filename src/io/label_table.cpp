@@ -20,7 +20,7 @@
 namespace pellucid {
 namespace {
 
-/// The words of a line; one in quotes may have spaces.
+/// Returns the words of a line; one in quotes may have spaces.
 std::vector<std::string> words_of(std::string_view line) {
   std::vector<std::string> words;
   std::size_t at = 0;
@@ -52,7 +52,7 @@ std::optional<double> number_of(const std::string& word) {
   return value;
 }
 
-/// The numbers of some words; none if one is no number or outside of its range.
+/// Returns the numbers of some words; none if one is no number or outside of its range.
 std::optional<std::vector<double>> numbers_of(const std::vector<std::string>& words,
                                               std::size_t first, std::size_t count,
                                               double largest) {

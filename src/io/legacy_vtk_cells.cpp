@@ -30,7 +30,7 @@ bool equal_words(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](char x, char y) { return lower(x) == lower(y); });
 }
 
-/// The next word, and what stands behind it.
+/// Returns the next word, and what stands behind it.
 std::string_view take_word(std::string_view& rest) {
   while (!rest.empty() && is_space(rest.front())) rest.remove_prefix(1);
   std::size_t length = 0;

@@ -27,7 +27,7 @@ std::optional<std::uintmax_t> number_in(const std::string& text) {
   return number;
 }
 
-/// The number that a file begins with; nothing where it is missing or says "max".
+/// Returns the number that a file begins with; nothing where it is missing or says "max".
 std::optional<std::uintmax_t> number_in_file(const fs::path& path) {
   std::ifstream file(path);
   std::string word;

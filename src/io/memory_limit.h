@@ -14,9 +14,9 @@ struct MemoryLimit {
   std::string of;  ///< "this machine", "the limit of …"
 };
 
-/// The least of: the machine's memory that is free or can be freed (with swap), what the control
-/// groups around this process allow (v1 and v2), and RLIMIT_AS and RLIMIT_DATA less what is taken.
-/// `root` is where /proc and /sys stand.
+/// Returns the least of: the machine's memory that is free or can be freed (with swap), what the
+/// control groups around this process allow (v1 and v2), and RLIMIT_AS and RLIMIT_DATA less what is
+/// taken. `root` is where /proc and /sys stand.
 MemoryLimit memory_limit(const std::filesystem::path& root = "/");
 
 /// Throws Error where `bytes` exceed that, before anything is allocated. `what` is what they are

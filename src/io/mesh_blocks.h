@@ -35,8 +35,8 @@ void name_cells_apart(std::vector<MeshArray>& arrays);
 /// and the first of them. Returns an empty text if there are none.
 std::string trimmed_note(const MeshFile& file, std::size_t cells);
 
-/// The index of the step nearest to `wanted`, the earlier of two; the first where nothing is
-/// wanted. `times` is not empty.
+/// Returns the index of the step nearest to `wanted`, the earlier of two; the first where nothing
+/// is wanted. `times` is not empty.
 inline std::size_t nearest_step(const std::vector<double>& times,
                                 std::optional<double> wanted) noexcept {
   if (!wanted) return 0;

@@ -186,7 +186,7 @@ struct Field {
   std::string key, value;
 };
 
-/// The lines up to ElementDataFile.
+/// Returns the lines up to ElementDataFile.
 std::vector<Field> read_fields(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::vector<Field> fields;
@@ -202,7 +202,7 @@ std::vector<Field> read_fields(const fs::path& path) {
   return fields;
 }
 
-/// The value of a key; empty where the header has none.
+/// Returns the value of a key; empty where the header has none.
 std::string value_of(const std::vector<Field>& fields, std::string_view key) {
   const auto found = std::ranges::find(fields, key, &Field::key);
   return found == fields.end() ? std::string() : found->value;

@@ -53,8 +53,8 @@ const char* type_of(std::int32_t code, const std::string& name) {
   }
 }
 
-/// The map from indices to RAS: the columns of the directions times the spacing, and the middle of
-/// the grid, dimensions / 2, at the center.
+/// Returns the map from indices to RAS: the columns of the directions times the spacing, and the
+/// middle of the grid, dimensions / 2, at the center.
 RasRows rows_of(const std::array<double, 3>& spacing, const std::array<double, 9>& columns,
                 const std::array<double, 3>& center,
                 const std::array<std::int64_t, 3>& dimensions) {

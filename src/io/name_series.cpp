@@ -172,7 +172,7 @@ std::string conversion_of(const std::vector<std::string>& numbers) {
   return "%" + filled + "." + std::to_string(*decimals.begin() - 1) + "f";
 }
 
-/// The files of these rows, numbered by a column.
+/// Returns the files of these rows, numbered by a column.
 NameSeries series_by(const Group& group, std::size_t column, const std::vector<std::size_t>& rows) {
   NameSeries series;
   std::vector<std::string> numbers;
@@ -244,7 +244,7 @@ bool has_equal_steps(const Group& group, std::size_t column) {
   return true;
 }
 
-/// The one column that numbers all files of a group; none: it is several series.
+/// Returns the one column that numbers all files of a group; none: it is several series.
 std::optional<std::size_t> numbering_column(const Group& group,
                                             const std::vector<std::size_t>& varying) {
   if (varying.size() == 1) return varying.front();
@@ -254,7 +254,7 @@ std::optional<std::size_t> numbering_column(const Group& group,
   return even == varying.end() ? varying.front() : *even;
 }
 
-/// The rows for each choice of the other columns.
+/// Returns the rows for each choice of the other columns.
 std::map<std::vector<std::string>, std::vector<std::size_t>> rows_by_others(const Group& group,
                                                                             std::size_t column) {
   std::map<std::vector<std::string>, std::vector<std::size_t>> rows;

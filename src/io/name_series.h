@@ -21,7 +21,8 @@ struct NameSeries {
 /// the others, unless the numbers go up together.
 std::vector<NameSeries> name_series(const std::vector<std::filesystem::path>& files);
 
-/// The series that a file may be of: one, or several where more than one of its numbers varies.
+/// Returns the series that a file may be of: one, or several where more than one of its numbers
+/// varies.
 std::vector<NameSeries> name_series_of(const std::filesystem::path& file,
                                        const std::vector<std::filesystem::path>& files);
 

@@ -207,7 +207,7 @@ std::vector<double> read_line(const NetCdfVariable& line) {
   return numbers;
 }
 
-/// A variable that the attribute `coordinates` names and that has this axis alone.
+/// Returns a variable that the attribute `coordinates` names and that has this axis alone.
 std::optional<NetCdfVariable> auxiliary_coordinate(const NetCdfVariable& variable,
                                                    std::size_t axis) {
   for (const std::string& name : words_of(variable.attributes, "coordinates")) {

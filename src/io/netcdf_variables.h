@@ -49,8 +49,8 @@ std::optional<NetCdfVariable> net_cdf_variable(int group, const std::string& nam
 
 std::string net_cdf_axis(const NetCdfVariable& variable, std::size_t axis);
 
-/// The type that the values have in memory, whole numbers of 64 bits double; nothing where they are
-/// no numbers.
+/// Returns the type that the values have in memory, whole numbers of 64 bits double; nothing where
+/// they are no numbers.
 std::optional<std::string> stored_type(const NetCdfVariable& variable);
 
 /// Returns the byte that the library writes where nothing is written, which may as well be a value;
@@ -69,7 +69,7 @@ struct NetCdfAxis {
 };
 std::vector<NetCdfAxis> net_cdf_axes(const NetCdfVariable& variable);
 
-/// The positions along an axis of so many values; missing ones are NaN.
+/// Returns the positions along an axis of so many values; missing ones are NaN.
 AxisPositions positions_of(const NetCdfAxis& axis, std::int64_t side);
 
 }  // namespace pellucid

@@ -54,7 +54,7 @@ VolumeData read_scaled(const ReadOn& read, const NiftiHeader& header, std::size_
       make_volume_data(header.layout.type, 0));
 }
 
-/// The same of whole numbers of 64 bits.
+/// Returns the same of whole numbers of 64 bits.
 template <class Stored>
 VolumeData read_scaled_whole(const ReadOn& read, const NiftiHeader& header, std::size_t count,
                              const std::string& name) {
@@ -188,7 +188,7 @@ Volume::Description describe(const NiftiHeader& header, const std::string& name,
   return description;
 }
 
-/// The largest distance of the same corner in both, in voxels of the first.
+/// Returns the largest distance of the same corner in both, in voxels of the first.
 double difference(const GridPlacement& one, const GridPlacement& other,
                   const std::array<std::int64_t, 3>& dimensions) {
   const double voxel = std::min({one.spacing.x, one.spacing.y, one.spacing.z});

@@ -276,7 +276,7 @@ Lie lie_of(const NpyArray& array, const ArrayAxes& axes, const std::string& name
   return lie;
 }
 
-/// All bytes of the values, in place where the source can be mapped.
+/// Returns all bytes of the values, in place where the source can be mapped.
 std::shared_ptr<const std::byte> all_bytes(const ByteSource& source, std::uintmax_t offset,
                                            std::size_t bytes) {
   if (source.map) {
@@ -290,7 +290,7 @@ std::shared_ptr<const std::byte> all_bytes(const ByteSource& source, std::uintma
   return {read, read->data()};
 }
 
-/// The components of an array whose axes lie in another order.
+/// Returns the components of an array whose axes lie in another order.
 std::vector<VolumeData> read_permuted(const ByteSource& source, const ValueLayout& layout,
                                       const Lie& lie, ComponentRange range) {
   const std::size_t points = lie.points(), size = value_size(layout.type, source.name);

@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view digits = "0123456789";
 constexpr std::size_t most_digits = 15;
 
-/// A number at a scale that all of its files share, as text.
+/// Returns a number at a scale that all of its files share, as text.
 std::string scaled_text(std::int64_t value, int fraction_digits) {
   std::string text = std::to_string(std::abs(value));
   const auto digits_behind = static_cast<std::size_t>(fraction_digits);
@@ -28,7 +28,7 @@ std::string scaled_text(std::int64_t value, int fraction_digits) {
   return value < 0 ? "-" + text : text;
 }
 
-/// The number as printf writes it, whatever the locale.
+/// Returns the number as printf writes it, whatever the locale.
 std::string written(const NamePattern& pattern, const NameNumber& number) {
   std::string text = scaled_text(number.mantissa, number.fraction_digits);
   if (pattern.letter != 'd') {
@@ -56,7 +56,7 @@ struct Conversion {
   NamePattern pattern;
 };
 
-/// The conversion that begins at a "%"; nothing where the text there is none.
+/// Returns the conversion that begins at a "%"; nothing where the text there is none.
 std::optional<Conversion> conversion_at(const std::string& text, std::size_t percent) {
   Conversion found;
   found.begin = percent;

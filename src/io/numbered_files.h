@@ -38,7 +38,7 @@ struct NamePattern {
   std::size_t precision = 6;
   bool zeros = false;
   bool plus = false;  ///< before numbers from 0
-  /// The number of a name that printf writes with this pattern; nothing for other names.
+  /// Returns the number of a name that printf writes with this pattern; nothing for other names.
   std::optional<NameNumber> number(const std::string& name) const;
 };
 /// Reads a pattern with one of %d, %3d, %03d, %+d, %f, %.2f, %g; %% stands for %. `conversions` is

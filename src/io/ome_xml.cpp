@@ -81,7 +81,7 @@ class Reader {
     throw Error(name_ + ": its OME-XML " + what);
   }
 
-  /// A whole number of at least `least`, or the default where there is none.
+  /// Returns a whole number of at least `least`, or the default where there is none.
   std::int64_t count(const XmlTag& tag, const char* key, std::int64_t least,
                      std::int64_t otherwise) const {
     const std::string word = attribute(tag, key);

@@ -32,7 +32,7 @@ struct OmeImage {
 /// Returns the image that a group's attributes describe; nothing if it is none. Throws Error.
 std::optional<OmeImage> parse_ome_image(const scene_json::Node& attributes);
 
-/// The attributes of NGFF, which 0.5 keeps in an object "ome".
+/// Returns the attributes of NGFF, which 0.5 keeps in an object "ome".
 scene_json::Node ome_attributes(const scene_json::Node& attributes);
 
 }  // namespace pellucid

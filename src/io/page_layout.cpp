@@ -97,7 +97,7 @@ class Layout {
     return axis == axes_.end() ? 1 : axis->count;
   }
 
-  /// The place of a plane among all, slices first, then channels, others and times.
+  /// Returns the place of a plane among all, slices first, then channels, others and times.
   std::int64_t place_of(std::int64_t step) const {
     std::int64_t z = 0, c = 0, o = 0, t = 0;
     for (const PageAxis& axis : axes_) {

@@ -12,7 +12,7 @@ using scene_json::printable;
 
 namespace {
 
-/// The lengths of a description that can be distances.
+/// Returns the lengths of a description that can be distances.
 std::array<std::optional<SaidLength>, 3> usable_lengths(const PageDescription& said) {
   auto lengths = said.spacing;
   for (auto& length : lengths) {

@@ -15,15 +15,15 @@ namespace pellucid {
 
 namespace {
 
-/// The lowest and highest number of a type of whole numbers.
+/// Returns the lowest and highest number of a type of whole numbers.
 std::array<double, 2> range_of(const std::string& type) {
   const double values = std::exp2(std::stod(type.substr(1)));
   return type.starts_with('i') ? std::array{-values / 2, values / 2 - 1}
                                : std::array{0.0, values - 1};
 }
 
-/// The type that holds the calibrated values of a stored one: a whole type where the slope is 1 and
-/// the offset whole, as for DICOM; else f32, of 32 bits and more f64.
+/// Returns the type that holds the calibrated values of a stored one: a whole type where the slope
+/// is 1 and the offset whole, as for DICOM; else f32, of 32 bits and more f64.
 std::string calibrated_type(const std::string& type, const ValueCalibration& by,
                             const std::string& name) {
   if (type.starts_with('f')) return type;

@@ -76,8 +76,8 @@ std::int64_t points_of(const Dimensions& d) {
   return std::int64_t{d[0]} * d[1] * d[2];
 }
 
-/// The dimensions of the blocks where the file's head can be read so; the reader then stands behind
-/// them.
+/// Returns the dimensions of the blocks where the file's head can be read so; the reader then
+/// stands behind them.
 std::optional<std::vector<Dimensions>> read_head(Reader& file, const Layout& layout) {
   constexpr int most_blocks = 1 << 20;
   file.go_to(0);
@@ -105,7 +105,7 @@ std::optional<std::vector<Dimensions>> read_head(Reader& file, const Layout& lay
   return list;
 }
 
-/// The bytes of a grid's file behind its head.
+/// Returns the bytes of a grid's file behind its head.
 std::uintmax_t grid_bytes(const std::vector<Dimensions>& blocks, const Layout& layout) {
   std::uintmax_t bytes = 0;
   for (const Dimensions& block : blocks) {
@@ -120,7 +120,8 @@ struct Head {
   std::vector<Dimensions> blocks;
 };
 
-/// The layout in which the file is as long as its head says. Some are padded to whole sectors.
+/// Returns the layout in which the file is as long as its head says. Some are padded to whole
+/// sectors.
 Head find_head(Reader& file) {
   constexpr std::uintmax_t longest_padding = 511;
   std::optional<Head> best;

@@ -240,7 +240,8 @@ class Reader {
                   : ""));
   }
 
-  /// The three numbers of an array along x, y and z; nothing where their order is not plain.
+  /// Returns the three numbers of an array along x, y and z; nothing where their order is not
+  /// plain.
   std::optional<std::array<double, 3>> along_axes(const ArrayBeside& array,
                                                   const NameParts& parts) const {
     const std::vector<double>& n = array.numbers;

@@ -54,8 +54,8 @@ auto with_memory(const std::filesystem::path& path, const Read& read) {
   }
 }
 
-/// The same, opened again without the files of a DICOM series that turn out to be damaged. Notes
-/// are told once, and only if there is no error, which is then the one line.
+/// Returns the same, opened again without the files of a DICOM series that turn out to be damaged.
+/// Notes are told once, and only if there is no error, which is then the one line.
 template <class Read>
 auto open_and(const std::filesystem::path& path, const ReadOptions& options, const Read& read) {
   std::vector<std::string> notes;

@@ -145,7 +145,7 @@ LayerProjection read_projection(const Node& node, const LayerDescription& layer)
   return projection;
 }
 
-/// A layer of version 2. A mask needs a field with a function of one variable.
+/// Returns a layer of version 2. A mask needs a field with a function of one variable.
 LayerDescription read_layer(const Node& node, const std::filesystem::path& folder) {
   node.expect_object({"name", "visible", "field", "channels", "mesh", "labels", "transfer_function",
                       "mask", "transform", "clip", "projection", "shading", "gradient_opacity",
@@ -174,7 +174,7 @@ LayerDescription read_layer(const Node& node, const std::filesystem::path& folde
   return layer;
 }
 
-/// The list of layers; in version 1 the one volume.
+/// Returns the list of layers; in version 1 the one volume.
 std::vector<LayerDescription> read_layers(const Node& document,
                                           const std::filesystem::path& folder) {
   const std::optional<int> version = checked_version(document);
@@ -204,7 +204,7 @@ std::vector<LayerDescription> read_layers(const Node& document,
   return layers;
 }
 
-/// The object that stands alone, or under its name in a document of its own with `others`.
+/// Returns the object that stands alone, or under its name in a document of its own with `others`.
 Node unwrap(const Node& document, std::string_view key,
             const std::vector<std::string_view>& others = {}) {
   if (!document.is_object() || !document.has(key)) return document;

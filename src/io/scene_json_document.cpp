@@ -22,7 +22,7 @@ std::string number_text(double number) {
   return text;
 }
 
-/// A token of a JSON pointer (RFC 6901), fit for a message.
+/// Returns a token of a JSON pointer (RFC 6901), fit for a message.
 std::string pointer_token(std::string_view key) {
   std::string escaped;
   for (const char c : key) {

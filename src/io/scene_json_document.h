@@ -53,7 +53,7 @@ class Node {
   /// true, or a number that is not 0, as other programs write it.
   bool is_true() const;
   bool has(std::string_view key) const;
-  /// The value of a key of this object; none where it is absent.
+  /// Returns the value of a key of this object; none where it is absent.
   std::optional<Node> find(std::string_view key) const;
   /// The same, but fails with the hint where it is absent.
   Node at(std::string_view key, const std::string& hint) const;
@@ -72,7 +72,7 @@ class Node {
   long long integer(long long lower, long long upper) const;
   bool boolean() const;
   const std::string& string() const;
-  /// The index of the string among the words; fails for another.
+  /// Returns the index of the string among the words; fails for another.
   std::size_t one_of(const std::vector<std::string_view>& words) const;
 
   const std::string& pointer() const noexcept { return pointer_; }

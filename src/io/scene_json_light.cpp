@@ -51,7 +51,7 @@ GradientOpacity::Point gradient_point(const Node& node) {
           node.at("factor", "give the factor of the extinction").number(0, largest_number)};
 }
 
-/// The colors of a surface: a function of one variable.
+/// Returns the colors of a surface: a function of one variable.
 TransferFunctionDescription colors(const Node& node) {
   TransferFunctionDescription function = transfer_function(node);
   if (std::holds_alternative<MultivariateDescription>(function)) {

@@ -238,7 +238,7 @@ LabelContent load_label_content(const LabelSource& source, const Layer* loaded) 
   return content;
 }
 
-/// The colors of a surface: a function of one variable, whose extinctions do not count.
+/// Returns the colors of a surface: a function of one variable, whose extinctions do not count.
 /// `description` none: grey over the range of the data.
 template <class Data>
 std::shared_ptr<const TransferFunction> surface_colors(

@@ -11,7 +11,7 @@
 
 namespace pellucid::scene_json {
 
-/// The elements of an array of three.
+/// Returns the elements of an array of three.
 std::array<Node, 3> three(const Node& node);
 /// [x, y, z].
 Vec3<double> vector(const Node& node);
@@ -22,11 +22,11 @@ Background background(const Node& node);
 std::vector<double> numbers(const Node& list, double lower = -largest_value);
 /// From 1 to 8 rows of `columns` numbers.
 std::vector<std::vector<double>> matrix(const Node& rows, std::size_t columns);
-/// A string that is_channel_name().
+/// Returns a string that is_channel_name().
 std::string channel_name(const Node& node);
 
 FieldSource field_source(const Node& field, const std::filesystem::path& folder);
-/// The same, beside other keys.
+/// Returns the same, beside other keys.
 FieldSource field_source_beside(const Node& field, const std::filesystem::path& folder,
                                 const std::vector<std::string_view>& more);
 std::vector<ChannelSource> channel_sources(const Node& list, const std::filesystem::path& folder);
@@ -36,14 +36,14 @@ std::vector<Clip> clips(const Node& list);
 /// Three rows of an affine map.
 Affine<double> affine_map(const Node& rows);
 MeshSource mesh_source(const Node& mesh, const std::filesystem::path& folder);
-/// A path that is not empty.
+/// Returns a path that is not empty.
 std::filesystem::path file_path(const Node& file, const std::filesystem::path& folder);
 
 /// Returns whether the colors of a transfer function are sRGB signals: its "color_space".
 bool is_srgb(const Node& function);
 /// [r, g, b] as linear light: 0 or more, or of sRGB 0 to 1.
 Rgb<double> color_of(const Node& node, bool srgb);
-/// The points of a piecewise-linear function; at least one.
+/// Returns the points of a piecewise-linear function; at least one.
 std::vector<TransferFunction::Point> extinction_points(const Node& list, bool srgb);
 /// Adds a point at the value, which does not descend; two equal ones make a jump.
 template <class Point>

@@ -19,7 +19,7 @@ std::string joined(std::initializer_list<std::string_view> parts) {
   return text;
 }
 
-/// The shortest decimal that reads back to the same double (at most 17 digits).
+/// Returns the shortest decimal that reads back to the same double (at most 17 digits).
 std::string number(double value, std::string_view what) {
   if (!std::isfinite(value)) {
     throw Error(joined({"scene: ", what, " is not a finite number; JSON cannot hold it"}));

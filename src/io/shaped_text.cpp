@@ -35,7 +35,7 @@ Shape shape_in(const Node& list) {
   return shape;
 }
 
-/// A letter for each axis, from a text or from axistags.
+/// Returns a letter for each axis, from a text or from axistags.
 std::string letters_in(const Node& axes) {
   if (axes.is_string()) return in_small_letters(axes.string());
   std::string letters;

@@ -47,7 +47,7 @@ class Cursor {
     at_ += bytes;
   }
 
-  /// A number, of text; what ends it is taken too.
+  /// Returns a number, of text; what ends it is taken too.
   template <class Number>
   Number number() {
     std::string word;

@@ -38,7 +38,7 @@ const char* type_for(std::int64_t least, std::uint64_t largest) {
   return "f64";
 }
 
-/// The difference between a number of this size and the double next to it.
+/// Returns the difference between a number of this size and the double next to it.
 std::uint64_t rounded_by(std::uint64_t size) {
   constexpr std::uint64_t exact = std::uint64_t{1} << 53;
   if (size <= exact) return 0;

@@ -30,7 +30,7 @@ namespace {
 constexpr std::uint32_t lsm_tag = 34412, metamorph_tag = 33629, scale_tag = 33550,
                         transform_tag = 34264, gdal_tag = 42112, no_data_tag = 42113;
 
-/// The image that the options choose, or the first. Throws Error.
+/// Returns the image that the options choose, or the first. Throws Error.
 OmeTiffImage chosen_image(OmeDocument& document, const ReadOptions& options,
                           const std::string& name) {
   std::vector<OmeTiffImage>& images = document.images;

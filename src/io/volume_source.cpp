@@ -26,7 +26,7 @@ bool is_native(const ValueLayout& layout, std::size_t size) {
   return size == 1 || layout.big_endian == (std::endian::native == std::endian::big);
 }
 
-/// The values in place; nothing where their bytes or their place are not those of memory.
+/// Returns the values in place; nothing where their bytes or their place are not those of memory.
 std::optional<VolumeData> mapped_values(const ByteSource& source, const ValueLayout& layout,
                                         std::size_t count) {
   const std::size_t size = value_size(layout.type, source.name);

@@ -24,7 +24,7 @@ struct ByteSource {
   std::function<std::shared_ptr<const std::byte>(std::size_t bytes)> map;
 };
 
-/// A regular file. Throws Error where it cannot be read.
+/// Returns a regular file. Throws Error where it cannot be read.
 ByteSource file_source(const std::filesystem::path& path);
 /// `bytes` must outlive the source.
 ByteSource memory_source(std::span<const std::byte> bytes, std::string name);
@@ -42,8 +42,8 @@ struct ValueLayout {
   Note note = {};             ///< is told where whole numbers are rounded; may be missing
 };
 
-/// The number of values of a grid. Throws Error where a side is not positive or the product is too
-/// large for any machine.
+/// Returns the number of values of a grid. Throws Error where a side is not positive or the product
+/// is too large for any machine.
 std::size_t value_count(const std::array<std::int64_t, 3>& dimensions, const std::string& name);
 /// 1, 2, 4 or 8 bytes, also of types that only files have. Throws Error for a name that is no type.
 std::size_t value_size(const std::string& type, const std::string& name);
@@ -60,13 +60,13 @@ void note_bytes_left_over(const ByteSource& source, std::uintmax_t end, const No
 
 /// Memory for so many values. Throws Error where there is not enough.
 VolumeData make_values(const std::string& type, std::size_t count, const std::string& name);
-/// The values, of one component, in their own type: in place where they lie there as in memory,
-/// else read. The source must hold them all.
+/// Returns the values, of one component, in their own type: in place where they lie there as in
+/// memory, else read. The source must hold them all.
 VolumeData read_values(const ByteSource& source, const ValueLayout& layout, std::size_t count);
 /// The values of a part of a grid, read row by row.
 struct GridPart;
 VolumeData read_part(const ByteSource& source, const ValueLayout& layout, const GridPart& part);
-/// The same from a stream that stands at the first of them.
+/// Returns the same from a stream that stands at the first of them.
 VolumeData read_values(DataStream& stream, const ValueLayout& layout, std::size_t count);
 /// Turns the bytes of each value where `big_endian` is not this machine's order.
 void to_native_order(VolumeData& data, bool big_endian);

@@ -51,7 +51,7 @@ bool is_flat(int type) {
   return std::ranges::find(flat, type) != std::end(flat);
 }
 
-/// The shape of a type whose number of points is its own.
+/// Returns the shape of a type whose number of points is its own.
 std::optional<CellShape> plain_shape(int type) {
   switch (type) {
     case tetra:
@@ -109,7 +109,8 @@ std::optional<CellShape> plain_shape(int type) {
   }
 }
 
-/// The order of a cell of so many points that has the same along each axis; 0: there is none.
+/// Returns the order of a cell of so many points that has the same along each axis; 0: there is
+/// none.
 int uniform_order(CellShape shape, std::size_t points) {
   for (int order = 1;; ++order) {
     const int needed = lagrange_points(shape, {order, order, order});
@@ -118,7 +119,7 @@ int uniform_order(CellShape shape, std::size_t points) {
   }
 }
 
-/// The plain shape that a Lagrange cell of such orders is.
+/// Returns the plain shape that a Lagrange cell of such orders is.
 std::optional<CellShape> plain_shape(CellShape shape, const std::array<int, 3>& orders) {
   const bool linear = orders == std::array{1, 1, 1}, quadratic = orders == std::array{2, 2, 2};
   if (!linear && !quadratic) return std::nullopt;

@@ -26,7 +26,7 @@ bool is_adaptive(const std::string& kind) {
   return std::ranges::find(adaptive, kind) != adaptive.end();
 }
 
-/// The file's kind where it lists others.
+/// Returns the file's kind where it lists others.
 std::optional<std::string> collection_kind(const fs::path& path) {
   const std::optional<VtkFileKind> kind = vtk_file_kind(path);
   if (!kind || !kind->xml) return std::nullopt;
@@ -37,7 +37,7 @@ std::optional<std::string> collection_kind(const fs::path& path) {
   return std::nullopt;
 }
 
-/// The files that the elements DataSet name, as they are named.
+/// Returns the files that the elements DataSet name, as they are named.
 std::vector<std::string> names_in(const fs::path& path) {
   const std::string name = path.string();
   constexpr std::size_t largest = std::size_t{1} << 26;

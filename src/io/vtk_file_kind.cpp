@@ -18,7 +18,7 @@ std::string upper_case(std::string text) {
   return text;
 }
 
-/// The attribute "type" of the element VTKFile.
+/// Returns the attribute "type" of the element VTKFile.
 std::optional<VtkFileKind> xml_kind(std::string_view head) {
   const std::size_t begin = head.find("<VTKFile");
   if (begin == std::string_view::npos) return std::nullopt;

@@ -264,8 +264,8 @@ class CellLists {
   std::vector<std::int64_t> corners_of_cell_, faces_of_cell_;
 };
 
-/// The orders of Lagrange cells along their axes, three numbers for each; null: the file does not
-/// say them.
+/// Returns the orders of Lagrange cells along their axes, three numbers for each; null: the file
+/// does not say them.
 vtkDataArray* orders_of_cells(vtkUnstructuredGrid& grid) {
   vtkCellData& data = *grid.GetCellData();
   vtkDataArray* orders = data.GetHigherOrderDegrees();
@@ -304,7 +304,7 @@ bool has_hidden_corner(vtkUnsignedCharArray& flags, std::span<const std::int64_t
   });
 }
 
-/// The cells that are kept, by their numbers in VTK.
+/// Returns the cells that are kept, by their numbers in VTK.
 std::vector<vtkIdType> gather_cells(vtkUnstructuredGrid& grid, std::size_t first_number,
                                     MeshFile& file, UnstructuredGrid& block) {
   CellLists lists(grid);

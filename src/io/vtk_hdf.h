@@ -57,9 +57,10 @@ inline constexpr const char* read_vtk_hdf_name = "pellucid_read_vtk_hdf_2";
 /// bytes, or the name, are of that kind. Throws Error where HDF5 cannot read it, or the build has
 /// none.
 std::optional<VtkHdfContents> vtk_hdf_contents(const std::filesystem::path& path);
-/// The same of a file that is one. Throws Error for kinds, versions and steps that are not read.
+/// Returns the same of a file that is one. Throws Error for kinds, versions and steps that are not
+/// read.
 VtkHdfContents vtk_hdf_contents(const std::filesystem::path& path, const char* type);
-/// The type of the file's data; empty: it is none, or cannot be read.
+/// Returns the type of the file's data; empty: it is none, or cannot be read.
 std::string vtk_hdf_type(const std::filesystem::path& path);
 
 /// The values of arrays one behind the other, each from a multiple of 8 bytes on.
@@ -72,7 +73,7 @@ class VtkHdfValues {
                    const std::optional<IndexBox>& box = {});
   /// Reads all that is wanted. Throws Error, also where memory does not hold it.
   void read();
-  /// The values, in the array's type, in place: they live as long as anyone has them.
+  /// Returns the values, in the array's type, in place: they live as long as anyone has them.
   VolumeData operator[](std::size_t number) const;
 
  private:

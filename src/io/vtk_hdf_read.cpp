@@ -22,7 +22,7 @@ std::string group_of(VtkHdfArray::Place place) {
                                               : std::string(root) + "/CellData";
 }
 
-/// A text of fixed or of variable length; empty where there is none.
+/// Returns a text of fixed or of variable length; empty where there is none.
 std::string text_attribute(hid_t object, const char* name) {
   if (H5Aexists(object, name) <= 0) return "";
   const Id attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose, name);
@@ -51,7 +51,8 @@ std::string text_attribute(hid_t object, const char* name) {
   return value;
 }
 
-/// The numbers of an attribute, few of them; none where it is not there or is something else.
+/// Returns the numbers of an attribute, few of them; none where it is not there or is something
+/// else.
 std::vector<double> number_attribute(hid_t object, const char* name) {
   if (H5Aexists(object, name) <= 0) return {};
   const Id attribute(H5Aopen(object, name, H5P_DEFAULT), H5Aclose, name);

@@ -35,7 +35,7 @@ Extent extent_of(const XmlTag& tag, const char* attribute, const XmlScanner& sca
               " of six whole numbers; it is damaged");
 }
 
-/// The values that two boxes have in common; nothing if there are none.
+/// Returns the values that two boxes have in common; nothing if there are none.
 std::optional<IndexBox> common(const IndexBox& a, const IndexBox& b) {
   IndexBox box;
   for (std::size_t axis = 0; axis < 3; ++axis) {

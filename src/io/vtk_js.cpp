@@ -68,7 +68,7 @@ std::string type_of(const Node& node) {
   node.fail("\"" + printable(node.string()) + "\" is no type of numbers");
 }
 
-/// The file of an array, compressed or not. Throws Error.
+/// Returns the file of an array, compressed or not. Throws Error.
 fs::path file_of(const Node& ref, const fs::path& folder, const std::string& name) {
   const auto base = ref.find("basepath");
   const std::string& id = ref.at("id", "name the file").string();
@@ -214,7 +214,7 @@ Image read_image(const fs::path& path) {
   return image;
 }
 
-/// The active scalars, else the first of one component, else the first that is read.
+/// Returns the active scalars, else the first of one component, else the first that is read.
 const Array& default_array(const Image& image, const std::string& name) {
   const auto readable = [](const Array& array) { return array.unreadable_reason.empty(); };
   for (const Array& array : image.arrays) {

@@ -24,7 +24,7 @@ std::string upper_case(std::string text) {
   return text;
 }
 
-/// The word behind DATASET, in capitals. It stands in the fourth line.
+/// Returns the word behind DATASET, in capitals. It stands in the fourth line.
 std::string dataset_of(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   constexpr std::size_t longest = 2048;

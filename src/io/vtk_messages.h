@@ -19,7 +19,7 @@ class VtkMessages {
   VtkMessages(const VtkMessages&) = delete;
   VtkMessages& operator=(const VtkMessages&) = delete;
 
-  /// The first error so far, on one line, without the place in VTK's sources; empty: none.
+  /// Returns the first error so far, on one line, without the place in VTK's sources; empty: none.
   std::string error() const;
   /// Throws Error with it, where there is one.
   void check() const;

@@ -90,7 +90,7 @@ ReadVolumeWithVtk& vtk_volume_module();
 /// Throws Error where the build has no such module, and loads nothing.
 void check_vtk_module();
 
-/// The memory that VTK may take for files of so many bytes, which may be compressed.
+/// Returns the memory that VTK may take for files of so many bytes, which may be compressed.
 std::uintmax_t memory_for_vtk(std::uintmax_t file_bytes);
 
 }  // namespace pellucid

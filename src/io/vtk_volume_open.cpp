@@ -78,8 +78,8 @@ struct Wanted {
   bool is_piece = false;  ///< of a list that has been checked, and that hides nothing
 };
 
-/// All arrays, or the one of this name, or to show; the latter without values where a part of them
-/// can be read (VtkVolume::read).
+/// Returns all arrays, or the one of this name, or to show; the latter without values where a part
+/// of them can be read (VtkVolume::read).
 VtkVolume read_grid(const std::filesystem::path& path, const Wanted& wanted) {
   const std::string name = path.string();
   const std::uintmax_t bytes = check_input_file(path);
@@ -201,7 +201,7 @@ std::vector<bool> hidden_places(const VtkVolume& grid, Centering centering, std:
   return hidden;
 }
 
-/// The box of points around values, which stand at points or in cells.
+/// Returns the box of points around values, which stand at points or in cells.
 IndexBox points_of(IndexBox values, Centering centering) {
   if (centering == Centering::cell) {
     for (int& side : values.count) ++side;
@@ -209,7 +209,8 @@ IndexBox points_of(IndexBox values, Centering centering) {
   return values;
 }
 
-/// The pieces of an image, with the places of an array's values, which stand at points or in cells.
+/// Returns the pieces of an image, with the places of an array's values, which stand at points or
+/// in cells.
 std::vector<ImagePiece> pieces_of(const std::filesystem::path& path, Centering centering) {
   const std::optional<VtkFileKind> kind = vtk_file_kind(path);
   if (!kind || kind->data != "PImageData") return {};

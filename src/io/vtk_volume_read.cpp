@@ -116,7 +116,7 @@ std::vector<Entry> entries_of(vtkDataSet& set) {
   return entries;
 }
 
-/// The active scalars, else the first of points with one component, else the first.
+/// Returns the active scalars, else the first of points with one component, else the first.
 const Entry& entry_to_show(const std::vector<Entry>& entries) {
   const auto active = std::ranges::find_if(entries, [](const Entry& e) { return e.active; });
   if (active != entries.end()) return *active;
@@ -236,7 +236,7 @@ void check(vtkAlgorithm& reader, const VtkMessages& messages) {
 
 using Extent = std::array<int, 6>;
 
-/// The first and last points along the axes.
+/// Returns the first and last points along the axes.
 Extent whole_extent(vtkInformation& about) {
   Extent extent{0, -1, 0, -1, 0, -1};
   about.Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent.data());
@@ -277,7 +277,7 @@ bool reads_parts(const std::vector<Entry>& entries, vtkDataArraySelection& point
   });
 }
 
-/// The points of the whole extent that are in the box.
+/// Returns the points of the whole extent that are in the box.
 Extent extent_of(const Extent& whole, const IndexBox& box) {
   Extent extent{};
   for (std::size_t a = 0; a < 3; ++a) {

@@ -128,7 +128,7 @@ struct Step {
   std::filesystem::path file;
 };
 
-/// The files of a .pvd, ascending by time.
+/// Returns the files of a .pvd, ascending by time.
 std::vector<Step> steps_of(const std::filesystem::path& path, const VtkMessages& messages) {
   const auto root =
       vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));

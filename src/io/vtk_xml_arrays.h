@@ -57,7 +57,7 @@ struct VtkXmlFile {
 
 /// Reads it without VTK. Throws Error, without the file's name, where it is damaged.
 VtkXmlFile read_vtk_xml(const std::filesystem::path& path);
-/// The same of a file in memory.
+/// Returns the same of a file in memory.
 VtkXmlFile parse_vtk_xml(std::string_view text);
 
 }  // namespace pellucid

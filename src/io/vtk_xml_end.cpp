@@ -27,7 +27,7 @@ std::string bytes_at(const fs::path& path, std::uintmax_t from, std::size_t most
   return bytes;
 }
 
-/// The values of the attributes that name files: those of pieces, blocks and steps.
+/// Returns the values of the attributes that name files: those of pieces, blocks and steps.
 std::vector<std::string> files_named(std::string_view text) {
   std::vector<std::string> names;
   for (const std::string_view attribute : {" Source=", " file="}) {

@@ -20,7 +20,7 @@ std::string vtk_type_name() {
 /// are escaped.
 std::string xml_attribute(std::string_view text);
 
-/// The element VTKFile of a file with arrays appended as they lie in memory, to its end.
+/// Returns the element VTKFile of a file with arrays appended as they lie in memory, to its end.
 std::string vtk_file_element(std::string_view type);
 /// An array that begins at `offset` of what is appended.
 std::string vtk_appended_array(const std::string& type, std::string_view name,

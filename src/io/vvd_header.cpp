@@ -184,7 +184,7 @@ void place(const Document& document, const std::string& name, GridPlacement& pla
   }
 }
 
-/// The values that a mapping makes of stored ones; the same data where it changes nothing.
+/// Returns the values that a mapping makes of stored ones; the same data where it changes nothing.
 VolumeData mapped(VolumeData stored, const Mapping& mapping, const std::string& name) {
   return std::visit(
       [&](const auto& values) -> VolumeData {

@@ -36,7 +36,7 @@ class ChunkReader {
   const ZarrChunkCounts& counts() const { return counts_; }
 
  private:
-  /// The next index in a box, the last axis fastest; false behind the last one.
+  /// Finds the next index in a box, the last axis fastest; false behind the last one.
   static bool advance(std::vector<std::int64_t>& index, const std::vector<std::int64_t>& end) {
     for (std::size_t a = index.size(); a-- > 0;) {
       if (++index[a] < end[a]) return true;
@@ -45,7 +45,8 @@ class ChunkReader {
     return false;
   }
 
-  /// A box of the array's axes, cut off where the array ends; false where nothing is left of it.
+  /// Finds a box of the array's axes, cut off where the array ends; false where nothing is left of
+  /// it.
   bool clip(std::vector<std::int64_t>& end, const std::vector<std::int64_t>& first) const {
     for (std::size_t a = 0; a < end.size(); ++a) {
       if (first[a] >= array_.shape[a]) return false;

@@ -263,7 +263,7 @@ std::array<std::byte, 8> bytes_of(Number number) {
   return bytes;
 }
 
-/// The lowest bytes of a whole number.
+/// Returns the lowest bytes of a whole number.
 std::array<std::byte, 8> bytes_of_whole(std::uint64_t number, const ZarrType& type) {
   if (type.bytes == 1) return bytes_of(static_cast<std::uint8_t>(number));
   if (type.bytes == 2) return bytes_of(static_cast<std::uint16_t>(number));

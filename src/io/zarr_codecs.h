@@ -32,7 +32,7 @@ class ZarrBytes {
 ZarrBytes undo_codecs(const std::vector<ZarrCodec>& codecs, ZarrBytes stored, std::size_t bytes,
                       const std::string& name);
 
-/// The polynomial of iSCSI.
+/// Returns the polynomial of iSCSI.
 std::uint32_t crc32c(std::span<const std::byte> bytes) noexcept;
 
 }  // namespace pellucid

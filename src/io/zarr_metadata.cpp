@@ -89,7 +89,7 @@ void put(Number number, std::array<std::byte, 8>& fill) {
   std::memcpy(fill.data(), &number, sizeof number);
 }
 
-/// A whole number that the file may state as 3 or 3.0, in this type.
+/// Returns a whole number that the file may state as 3 or 3.0, in this type.
 template <class Number>
 Number whole(const Node& node) {
   const nlohmann::json& value = node.value();
@@ -171,7 +171,7 @@ void read_fill(const Node& node, ZarrArray& array) {
   }
 }
 
-/// A codec of numcodecs by its name and its configuration.
+/// Returns a codec of numcodecs by its name and its configuration.
 ZarrCodec numcodecs_codec(const std::string& name, const Node& where, const Node* settings,
                           const ZarrType& type) {
   using Kind = ZarrCodec::Kind;

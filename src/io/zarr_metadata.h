@@ -96,7 +96,8 @@ ZarrArray zarr_array(const ZarrNode& node);
 ZarrArray parse_zarr_2(const scene_json::Node& metadata);
 ZarrArray parse_zarr_3(const scene_json::Node& metadata);
 
-/// The number of values of a chunk. Throws Error that begins with `name` where no machine holds it.
+/// Returns the number of values of a chunk. Throws Error that begins with `name` where no machine
+/// holds it.
 std::size_t zarr_chunk_values(const std::vector<std::int64_t>& chunk, const std::string& name);
 
 }  // namespace pellucid

@@ -61,7 +61,7 @@ std::string list_of(const std::vector<ZarrEntry>& entries) {
   return printable(list);
 }
 
-/// The image that a group is, at the level that the options choose.
+/// Returns the image that a group is, at the level that the options choose.
 ZarrChoice choose_level(const fs::path& group, OmeImage image, const ReadOptions& options) {
   const std::string name = group.string();
   ZarrChoice choice;

@@ -26,17 +26,18 @@ struct ZarrView {
   int component_count(const ZarrArray& array, const std::string& name) const;
 };
 
-/// The type that values are kept in; of 64-bit whole numbers the largest that may become of them.
+/// Returns the type that values are kept in; of 64-bit whole numbers the largest that may become of
+/// them.
 std::string kept_type(const ZarrType& type);
 
-/// The components of an array that lies in `folder`, read chunk by chunk into their place. Missing
-/// chunks have the fill value, which `note` is told; it may be missing. Throws Error.
+/// Returns the components of an array that lies in `folder`, read chunk by chunk into their place.
+/// Missing chunks have the fill value, which `note` is told; it may be missing. Throws Error.
 std::vector<VolumeData> read_zarr_values(const std::filesystem::path& folder,
                                          const ZarrArray& array, const ZarrView& view,
                                          ComponentRange range,
                                          const std::function<void(const std::string&)>& note);
 
-/// All values of an array of one axis, as doubles. Throws Error; also for more than `most`.
+/// Returns all values of an array of one axis, as doubles. Throws Error; also for more than `most`.
 std::vector<double> read_zarr_line(const std::filesystem::path& folder, const ZarrArray& array,
                                    std::size_t most);
 

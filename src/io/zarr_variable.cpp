@@ -114,8 +114,8 @@ void apply_unsigned(const VariableAttributes& attributes, ZarrArray& array) {
   if (text == "false" && array.type.name[0] == 'u') array.type.name[0] = 'i';
 }
 
-/// The coordinate of an axis: the array of its name, else one that `coordinates` names and that has
-/// this axis alone.
+/// Returns the coordinate of an axis: the array of its name, else one that `coordinates` names and
+/// that has this axis alone.
 std::optional<fs::path> coordinate_of(const ZarrVariable& variable, std::size_t axis) {
   const std::string& name = variable.array.dimension_names[axis];
   std::vector<std::string> names = words_of(variable.attributes, "coordinates");

@@ -28,7 +28,7 @@ constexpr std::uint32_t in_extra_field = 0xffffffff;
   throw Error(name + ": " + what + "; the file is cut off or damaged");
 }
 
-/// A number of so many bytes, the lowest first.
+/// Returns a number of so many bytes, the lowest first.
 std::uint64_t number(std::span<const std::byte> bytes, std::size_t at, std::size_t size) {
   std::uint64_t value = 0;
   for (std::size_t i = size; i-- > 0;) {

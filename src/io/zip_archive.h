@@ -22,8 +22,9 @@ struct ZipEntry {
 /// Reads the directory at the end of a zip archive, also of zip64. Throws Error.
 std::vector<ZipEntry> read_zip_directory(const ByteSource& archive);
 
-/// The bytes of an entry, inflated as they are read; reading backwards begins anew. Throws Error
-/// where they are damaged, encrypted or packed by another method, or the checksum is not theirs.
+/// Returns the bytes of an entry, inflated as they are read; reading backwards begins anew. Throws
+/// Error where they are damaged, encrypted or packed by another method, or the checksum is not
+/// theirs.
 ByteSource zip_entry_source(const ByteSource& archive, const ZipEntry& entry);
 
 }  // namespace pellucid

@@ -16,27 +16,29 @@ class Chord {
 
   static Chord linear(Real at_entry, Real at_exit);
 
-  /// The part [u_begin, u_end], as a chord of its own.
+  /// Returns the part [u_begin, u_end], as a chord of its own.
   Chord part(Real u_begin, Real u_end) const;
 
-  /// The sum of the eight corners, each times the product of its three weights.
+  /// Returns the sum of the eight corners, each times the product of its three weights.
   Real operator()(Real u) const;
 
-  /// The same as a polynomial in u, lowest power first: the product of the weights multiplied out.
+  /// Returns the same as a polynomial in u, lowest power first: the product of the weights
+  /// multiplied out.
   const std::array<Real, 4>& monomial() const { return monomial_; }
   /// On the part [u_begin, u_end], as a polynomial in w from 0 to 1 there.
   std::array<Real, 4> monomial(Real u_begin, Real u_end) const;
 
-  /// Range of the corners that have a weight anywhere on the chord; encloses the data on it.
+  /// Returns the range of the corners that have a weight anywhere on the chord; encloses the data
+  /// on it.
   Real lower() const { return lower_; }
   Real upper() const { return upper_; }
 
   /// Returns the zeros of the derivative inside (0, 1), ascending; at most two.
   std::vector<Real> stationary_points() const;
 
-  /// The parameters in (0, 1) at which the data passes through one of the values (ascending, no
-  /// two equal), together with its stationary points, ascending. Between neighbours the data stays
-  /// on one side of every value.
+  /// Returns the parameters in (0, 1) at which the data passes through one of the values
+  /// (ascending, no two equal), together with its stationary points, ascending. Between neighbours
+  /// the data stays on one side of every value.
   std::vector<Real> cuts(const std::vector<Real>& values) const;
 
  private:

@@ -13,7 +13,7 @@ struct RayPart {
   Real begin, end;
 };
 
-/// The parts of a ray (direction of length 1) at t >= 0 that all clips keep, front to back.
+/// Returns the parts of a ray (direction of length 1) at t >= 0 that all clips keep, front to back.
 std::vector<RayPart> kept_parts(const RealRay& ray, const std::vector<const Clip*>& clips);
 
 }  // namespace pellucid::reference

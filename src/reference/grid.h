@@ -21,34 +21,36 @@ struct Crossing {
 class Grid {
  public:
   explicit Grid(const Volume& volume);
-  /// The cells around the values, one for each, bounded half-way to the next one and by the
+  /// Returns the cells around the values, one for each, bounded half-way to the next one and by the
   /// volume's box: those of labels.
   static Grid around_values(const Volume& volume);
 
-  /// Every cell that the ray (direction of length 1) crosses at t >= 0, front to back: the
+  /// Returns every cell that the ray (direction of length 1) crosses at t >= 0, front to back: the
   /// parameters of all planes of all axes, sorted.
   std::vector<Crossing> crossings(const RealRay& ray_world) const;
 
-  /// The data along a crossing; nothing where a corner of the cell is NaN.
+  /// Returns the data along a crossing; nothing where a corner of the cell is NaN.
   std::optional<Chord> chord(const Crossing& crossing) const;
-  /// The data value at a crossing's lower corner: of cells around values the value of the cell.
+  /// Returns the data value at a crossing's lower corner: of cells around values the value of the
+  /// cell.
   Real value(const Crossing& crossing) const;
 
-  /// The gradient of the data along a crossing without NaN corners: x, y and z of the world.
+  /// Returns the gradient of the data along a crossing without NaN corners: x, y and z of the
+  /// world.
   std::array<Chord, 3> gradient(const Crossing& crossing, GradientKind kind) const;
-  /// The magnitudes of the smooth gradient at the corners, interpolated like the data.
+  /// Returns the magnitudes of the smooth gradient at the corners, interpolated like the data.
   Chord gradient_magnitude(const Crossing& crossing) const;
 
  private:
   using Index = std::array<std::size_t, 3>;
 
   RealRay to_grid(const RealRay& ray_world) const;
-  /// The data value that corner k of a crossing's cell shows.
+  /// Returns the data value that corner k of a crossing's cell shows.
   Index shown_at(const Crossing& crossing, std::size_t k) const;
   Real value_at(const Index& index) const;
-  /// World gradient at a data value; NaN neighbours are left out.
+  /// Returns world gradient at a data value; NaN neighbours are left out.
   Real3 smooth_gradient(const Index& index) const;
-  /// World gradient of the trilinear data at corner k.
+  /// Returns world gradient of the trilinear data at corner k.
   Real3 cell_gradient(const Crossing& crossing, std::size_t k) const;
   Real3 gradient_in_world(const Real3& in_grid) const;
 

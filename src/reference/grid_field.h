@@ -16,7 +16,7 @@ class GridField : public Field {
   Real visit(const RealRay& ray, const Visit& visit) const override;
 
  private:
-  /// A chord for each volume, then those derived; none where a corner is NaN in any volume.
+  /// Returns a chord for each volume, then those derived; none where a corner is NaN in any volume.
   std::vector<Chord> chords(const Crossing& crossing) const;
 
   std::vector<Grid> grids_;

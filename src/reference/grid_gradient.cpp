@@ -18,7 +18,7 @@ std::array<Chord, 3> chords_of(const std::array<Real3, 8>& corner, const Crossin
 
 }  // namespace
 
-/// The chain rule: ∂v/∂world_a = Σ_b ∂v/∂grid_b · ∂grid_b/∂world_a.
+/// Returns the chain rule: ∂v/∂world_a = Σ_b ∂v/∂grid_b · ∂grid_b/∂world_a.
 Real3 Grid::gradient_in_world(const Real3& in_grid) const {
   Real3 result{};
   for (std::size_t a = 0; a < 3; ++a) {

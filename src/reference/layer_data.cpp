@@ -74,7 +74,7 @@ std::vector<LayerStretch> LayerData::stretches_of_labels(const RealRay& ray) con
 
 namespace {
 
-/// The part [begin, end] of a stretch.
+/// Returns the part [begin, end] of a stretch.
 LayerStretch part_of(const LayerStretch& whole, Real begin, Real end, const Mixture* function) {
   LayerStretch part{begin, end, {}, function};
   const Real length = whole.t_end - whole.t_begin;

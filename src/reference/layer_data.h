@@ -27,8 +27,8 @@ class LayerData {
   /// The layer is in its place.
   LayerData(const Layer& layer, const std::vector<Clip>& of_scene);
 
-  /// The stretches of a ray at t >= 0 that clips keep, front to back. Adds the number of cells
-  /// crossed to `cells`, and the length on which the data have two values to `overlap`.
+  /// Returns the stretches of a ray at t >= 0 that clips keep, front to back. Adds the number of
+  /// cells crossed to `cells`, and the length on which the data have two values to `overlap`.
   std::vector<LayerStretch> stretches(const RealRay& ray, std::uint64_t& cells,
                                       Real& overlap) const;
 

@@ -33,9 +33,9 @@ class LitLayer {
     return data_.stretches(ray, cells, overlap);
   }
   LitStretch prepared(LayerStretch stretch, const RayLights& lights) const;
-  /// The part [begin, end] of a stretch, world arc length, between neighbouring cuts.
+  /// Returns the part [begin, end] of a stretch, world arc length, between neighbouring cuts.
   LitPart part(const LitStretch& stretch, Real begin, Real end, const RayLights& lights) const;
-  /// A color of the layer's as the lights show it at u of a stretch.
+  /// Returns a color of the layer's as the lights show it at u of a stretch.
   Rgb<double> shaded_surface(const Rgb<double>& color, const LayerStretch& stretch, Real u,
                              const RayLights& lights) const;
 

@@ -21,9 +21,9 @@ class Mesh {
  public:
   explicit Mesh(const TetrahedralMesh& mesh);
 
-  /// Every tetrahedron that the ray (direction of length 1) crosses at t >= 0, by where it begins.
-  /// A ray that meets points or edges, or runs within faces, is moved aside by less than any
-  /// number (EdgeSides), so that it crosses one of the tetrahedra that touch there.
+  /// Returns every tetrahedron that the ray (direction of length 1) crosses at t >= 0, by where it
+  /// begins. A ray that meets points or edges, or runs within faces, is moved aside by less than
+  /// any number (EdgeSides), so that it crosses one of the tetrahedra that touch there.
   std::vector<TetrahedronCrossing> crossings(const RealRay& ray) const;
 
  private:

@@ -20,7 +20,8 @@ class MeshField : public Field {
   Real visit(const RealRay& ray, const Visit& visit) const override;
 
  private:
-  /// A chord for each channel, then those derived; none where a value is NaN in any channel.
+  /// Returns a chord for each channel, then those derived; none where a value is NaN in any
+  /// channel.
   std::vector<Chord> chords(const TetrahedronCrossing& crossing) const;
 
   const MeshChannels& channels_;

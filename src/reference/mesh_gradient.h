@@ -14,7 +14,8 @@ class MeshGradient {
  public:
   MeshGradient(const MeshChannels& channels, int channel, GradientKind kind);
 
-  /// The gradient at the points of a tetrahedron, linear between: of `field` four times the same.
+  /// Returns the gradient at the points of a tetrahedron, linear between: of `field` four times the
+  /// same.
   std::array<Real3, 4> at_points_of(std::size_t tetrahedron) const;
 
  private:

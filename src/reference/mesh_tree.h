@@ -18,7 +18,7 @@ class MeshTree {
 
   explicit MeshTree(const std::vector<Bounds>& boxes);
 
-  /// The numbers of all boxes that the ray meets at t >= 0, and of some more.
+  /// Returns the numbers of all boxes that the ray meets at t >= 0, and of some more.
   std::vector<std::int32_t> near(const RealRay& ray) const;
 
  private:

@@ -26,8 +26,8 @@ class Mixture {
   /// By which the extinctions of all terms are multiplied; null: nothing. LitLayer does it.
   const ChannelTable* factor() const { return factor_ ? &*factor_ : nullptr; }
 
-  /// The parameters in (0, 1), ascending, at which a table's channel passes through one of its
-  /// control values or turns; a chord for each channel.
+  /// Returns the parameters in (0, 1), ascending, at which a table's channel passes through one of
+  /// its control values or turns; a chord for each channel.
   std::vector<Real> cuts(const std::vector<Chord>& chords) const;
 
  private:

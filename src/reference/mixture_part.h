@@ -23,7 +23,7 @@ struct MixtureSamples {
   double gaussian_depth() const;
   /// Returns the depth of the share s of the part, from its front.
   double depth_to(double s) const;
-  /// The share of the part in front of which the depth grows from `before` to `target`.
+  /// Returns the share of the part in front of which the depth grows from `before` to `target`.
   double share_at_depth(double before, double target) const;
   /// ∫ e^(-depth from the front) · Σ rate · color.
   std::array<Real, 3> radiance() const;
@@ -50,7 +50,7 @@ class MixturePart {
   Real length() const { return length_; }
   /// Returns whether nothing absorbs.
   bool is_clear() const { return gaussians_.empty() && tables_.empty(); }
-  /// The most that the exponent of any primitive changes by, or more.
+  /// Returns the most that the exponent of any primitive changes by, or more.
   Real exponent_change() const;
   MixtureSamples sample() const;
 

@@ -9,8 +9,8 @@
 
 namespace pellucid::reference {
 
-/// The volume rendering integral through several channels along a ray with a direction of length 1.
-/// Adds the number of cells crossed to `cells`.
+/// Returns the volume rendering integral through several channels along a ray with a direction of
+/// length 1. Adds the number of cells crossed to `cells`.
 ReferencePixel integrate(const Field& field, const Mixture& mixture, const RealRay& ray,
                          bool with_depth, std::uint64_t& cells);
 

@@ -49,7 +49,7 @@ class Gatherer {
 
   /// No more than 1e-16 of the light comes from behind.
   bool done() const;
-  /// All but the half-opacity depth.
+  /// Returns all but the half-opacity depth.
   ReferencePixel result() const;
   double optical_depth() const { return static_cast<double>(depth_); }
 

@@ -14,7 +14,7 @@ const std::vector<TransferFunction::Point>& points_of(const Layer& layer) {
                          : std::get<VolumeContent>(layer.content).transfer_function->points();
 }
 
-/// The largest value of sign · chord on [from, to], where it has one top at most.
+/// Returns the largest value of sign · chord on [from, to], where it has one top at most.
 Real top_between(const Chord& chord, Real sign, Real from, Real to) {
   const Real golden = (std::sqrt(Real(5)) - 1) / 2;
   Real left = to - golden * (to - from), right = from + golden * (to - from);
@@ -39,7 +39,7 @@ Real top_between(const Chord& chord, Real sign, Real from, Real to) {
   return best;
 }
 
-/// The largest value of sign · chord on [0, last].
+/// Returns the largest value of sign · chord on [0, last].
 Real top(const Chord& chord, Real sign, Real last) {
   constexpr int count = 64;
   Real best = -std::numeric_limits<Real>::infinity();

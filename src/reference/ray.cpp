@@ -10,7 +10,8 @@
 namespace pellucid::reference {
 namespace {
 
-/// World arc length where the depth, `before` at the piece's front, reaches `target` inside.
+/// Returns world arc length where the depth, `before` at the piece's front, reaches `target`
+/// inside.
 double position_of_depth(const Piece& piece, double before, double target) {
   const auto excess = [&](double w) { return before + piece.depth(0, w) - target; };
   if (!(excess(0) < 0)) return piece.t(0);

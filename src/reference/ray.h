@@ -9,8 +9,8 @@
 
 namespace pellucid::reference {
 
-/// The volume rendering integral through one channel along a ray with a direction of length 1. Adds
-/// the number of cells crossed to `cells`.
+/// Returns the volume rendering integral through one channel along a ray with a direction of length
+/// 1. Adds the number of cells crossed to `cells`.
 ReferencePixel integrate(const Field& field, const Table& table, const RealRay& ray,
                          bool with_depth, std::uint64_t& cells);
 

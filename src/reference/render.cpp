@@ -25,7 +25,7 @@
 namespace pellucid {
 namespace {
 
-/// The mean of a pixel's rays; its depth is that of the nearest.
+/// Returns the mean of a pixel's rays; its depth is that of the nearest.
 ReferencePixel mean_of(const std::vector<ReferencePixel>& rays) {
   if (rays.size() == 1) return rays.front();
   const double weight = 1 / static_cast<double>(rays.size());

@@ -28,8 +28,8 @@ class SceneIntegral {
   /// number of cells crossed to `cells`.
   ReferencePixel operator()(const RealRay& ray, bool with_depth, std::uint64_t& cells,
                             Real end = std::numeric_limits<Real>::infinity()) const;
-  /// The same with its half-opacity depth. Throws Error for a direction of length 0,
-  /// and for an end without a backdrop.
+  /// Returns the same with its half-opacity depth. Throws Error for a direction of length 0, and
+  /// for an end without a backdrop.
   ReferencePixel operator()(const Vec3<double>& origin, const Vec3<double>& direction,
                             Real end = std::numeric_limits<Real>::infinity()) const;
 

@@ -22,12 +22,12 @@ class Table {
  public:
   explicit Table(const std::vector<TransferFunction::Point>& points);
 
-  /// The interval that holds v; at a control value the one on its right.
+  /// Returns the interval that holds v; at a control value the one on its right.
   TableInterval interval(Real v) const;
   Real extinction(Real v) const;
   /// Returns whether the extinction is 0 for all values in [lower, upper].
   bool is_clear(Real lower, Real upper) const;
-  /// The control values, ascending, each once.
+  /// Returns the control values, ascending, each once.
   const std::vector<Real>& values() const { return values_; }
 
  private:

@@ -60,8 +60,8 @@ class AxisDifferences {
   }
 
   const Stencil& operator[](int i) const noexcept { return stencils_[static_cast<std::size_t>(i)]; }
-  /// The shortest distance of two neighbours: the unit of length of the derivatives, which keeps
-  /// the weights small whatever the coordinates.
+  /// Returns the shortest distance of two neighbours: the unit of length of the derivatives, which
+  /// keeps the weights small whatever the coordinates.
   double unit() const noexcept { return unit_; }
 
  private:

@@ -19,8 +19,8 @@ float above(double x) {
   return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
 }
 
-/// The indices of the points that are left of a curve through (value, curves[c]) when those go that
-/// lie on the line between their neighbours that stay; both points of a jump stay.
+/// Returns the indices of the points that are left of a curve through (value, curves[c]) when those
+/// go that lie on the line between their neighbours that stay; both points of a jump stay.
 std::vector<int> corners(const PiecewiseLinear<double>& table, const auto& curves_at) {
   std::vector<int> kept{0};
   constexpr std::size_t channels = std::tuple_size_v<decltype(curves_at(0))>;

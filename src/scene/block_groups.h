@@ -78,7 +78,7 @@ struct GroupVariation {
     }
   }
 
-  /// The most that a derivative changes in a cell.
+  /// Returns the most that a derivative changes in a cell.
   double most_change() const noexcept {
     return static_cast<double>(std::max({bend[0], bend[1], bend[2], twist[0], twist[1], twist[2]}));
   }

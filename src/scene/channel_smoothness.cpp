@@ -57,9 +57,9 @@ class ChannelMovement {
     return found;
   }
 
-  /// A bound on the second derivative along any direction: of the matrix of them, a derivative's
-  /// jump from cell to cell being that along an axis, no eigenvalue is more than the largest sum
-  /// over a row.
+  /// Returns a bound on the second derivative along any direction: of the matrix of them, a
+  /// derivative's jump from cell to cell being that along an axis, no eigenvalue is more than the
+  /// largest sum over a row.
   double turn(int block) const noexcept {
     const BlockBends bends = records_.bends(block);
     double most = 0;

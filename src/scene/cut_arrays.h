@@ -7,12 +7,12 @@
 
 namespace pellucid {
 
-/// An array of the grid, all its components, at the points or the tetrahedra of the cut (whose
-/// CellCut::cell is there where the array is centred on cells).
+/// Returns an array of the grid, all its components, at the points or the tetrahedra of the cut
+/// (whose CellCut::cell is there where the array is centred on cells).
 VolumeData carried(const UnstructuredGrid& grid, const MeshArray& array, const CellCut& cut);
 
-/// The array that a choice names: of points, where points and cells have one. Throws Error where
-/// there is none, or it has no such component.
+/// Returns the array that a choice names: of points, where points and cells have one. Throws Error
+/// where there is none, or it has no such component.
 const MeshArray& chosen_array(const UnstructuredGrid& grid, const MeshArrayChoice& choice);
 
 /// Returns the chosen part of the array, at the points or the tetrahedra of the cut.

@@ -25,7 +25,7 @@ double range_of(const Layer& layer) {
   return data.maximum - data.minimum;
 }
 
-/// The mean side of the data's box.
+/// Returns the mean side of the data's box.
 double side_of(const Layer& layer) {
   const std::array<Vec3<double>, 8> corners = world_corners(layer);
   double sum = 0;

@@ -12,7 +12,7 @@ namespace pellucid {
 /// Throws Error with the grid's name in front.
 [[noreturn]] void fail(const UnstructuredGrid& grid, const std::string& message);
 
-/// The number by which messages call a cell.
+/// Returns the number by which messages call a cell.
 std::int32_t cell_number(const UnstructuredGrid& grid, std::size_t cell);
 
 /// Throws Error where there is no cell, corners or layouts are not what the shapes want, a corner

@@ -129,7 +129,7 @@ class SampledRows {
     return std::min(static_cast<std::size_t>(share * static_cast<double>(rows_)), rows_ - 1);
   }
   std::size_t length() const { return nx_; }
-  /// The rows behind along y and along z; `row` itself where there is none.
+  /// Returns the rows behind along y and along z; `row` itself where there is none.
   std::size_t next_y(std::size_t row) const { return row % ny_ + 1 < ny_ ? row + 1 : row; }
   std::size_t next_z(std::size_t row) const { return row + ny_ < rows_ ? row + ny_ : row; }
 
@@ -137,7 +137,7 @@ class SampledRows {
   std::size_t nx_, ny_, rows_, taken_;
 };
 
-/// All values of data that look like labels, or that are alike as far as rows tell.
+/// Returns all values of data that look like labels, or that are alike as far as rows tell.
 template <class Value>
 std::optional<DistinctValues<Value>> find_labels(std::span<const Value> data,
                                                  const SampledRows& rows) {

@@ -24,8 +24,8 @@ class LagrangeNodes {
   /// `layout`: as UnstructuredGrid::layouts, checked.
   LagrangeNodes(CellShape shape, const std::int32_t* layout);
 
-  /// The node at (i, j, k) of the lattice. Of a tetrahedron they are the weights of the corners 1,
-  /// 2 and 3; of a wedge those of the corners 1 and 2, and the layer.
+  /// Returns the node at (i, j, k) of the lattice. Of a tetrahedron they are the weights of the
+  /// corners 1, 2 and 3; of a wedge those of the corners 1 and 2, and the layer.
   int operator()(int i, int j, int k) const noexcept {
     return nodes_[static_cast<std::size_t>(i + side_[0] * (j + side_[1] * k))];
   }

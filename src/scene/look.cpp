@@ -75,7 +75,7 @@ double share_between(const std::vector<double>& v, double lower, double upper) {
   return static_cast<double>(end - begin) / static_cast<double>(v.size());
 }
 
-/// The value of air, if these are Hounsfield units, or those plus 1000 or 1024.
+/// Returns the value of air, if these are Hounsfield units, or those plus 1000 or 1024.
 std::optional<double> air_of(const std::vector<double>& v, const VolumeStatistics& range) {
   if (v.empty()) return std::nullopt;
   constexpr double least_air = 0.05, most = 32767;

@@ -41,7 +41,7 @@ Depths depths(const LookedAt& data) {
   return {data.values.values.size(), data.chord, data.filled};
 }
 
-/// A haze of one value.
+/// Returns a haze of one value.
 Look even_look(const LookedAt& data, const Rgb<double>& color) {
   Look look;
   const std::vector<double>& v = data.values.values;
@@ -87,7 +87,7 @@ class Levels {
   std::vector<double> levels_;
 };
 
-/// The opacity of the i-th of surfaces from the outermost in.
+/// Returns the opacity of the i-th of surfaces from the outermost in.
 double opacity_of(std::size_t i, std::size_t count) {
   const double in = count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 1;
   return std::round(100 * (0.22 + 0.7 * std::pow(in, 1.3))) / 100;

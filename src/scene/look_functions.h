@@ -21,7 +21,7 @@ bool is_mostly_near_zero(const ClassedValues& of);
 
 /// Bone in Hounsfield units, or skin, in light. `air`: the value of air, -1000 in those units.
 Look ct_look(double air, bool skin, double chord);
-/// The background clear, the rest dense and in light: tissue warm, or material.
+/// Returns the background clear, the rest dense and in light: tissue warm, or material.
 Look scan_look(const LookedAt& data, bool medical);
 /// Glows with its value, without light.
 Look microscopy_look(const LookedAt& data);
@@ -29,7 +29,7 @@ Look microscopy_look(const LookedAt& data);
 Look fog_look(const LookedAt& data);
 /// Surfaces of equal value.
 Look simulation_look(const LookedAt& data);
-/// The surface between two values.
+/// Returns the surface between two values.
 Look mask_look(double lower, double upper);
 /// Values on and below the surface.
 Look body_look(const LookedAt& data);

@@ -18,7 +18,7 @@ inline double mean_chord(const Volume& volume) {
   return 4 * std::abs(dot(a, cross(b, c))) / surface;
 }
 
-/// The same of a box along the axes.
+/// Returns the same of a box along the axes.
 inline double mean_chord(const Box<double>& box) {
   const Vec3<double> size = box.upper - box.lower;
   return 2 * size.x * size.y * size.z / (size.x * size.y + size.y * size.z + size.z * size.x);

@@ -9,8 +9,8 @@
 
 namespace pellucid {
 
-/// A number as messages show it: the shortest text that reads back as the same double, whatever
-/// the locale.
+/// Returns a number as messages show it: the shortest text that reads back as the same double,
+/// whatever the locale.
 inline std::string number(double x) {
   std::array<char, 32> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), x).ptr;

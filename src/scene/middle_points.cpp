@@ -26,7 +26,7 @@ constexpr MiddleNode hexahedron_middles[]{
     {4, {4, 5, 6, 7, 12, 13, 14, 15}},
     {8, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19}}};
 
-/// The nodes in the middle that a cell of this shape has, at the end of its points.
+/// Returns the nodes in the middle that a cell of this shape has, at the end of its points.
 std::span<const MiddleNode> given_nodes(CellShape shape) noexcept {
   if (shape == CellShape::biquadratic_wedge) return wedge_middles;
   if (shape == CellShape::triquadratic_hexahedron) return hexahedron_middles;

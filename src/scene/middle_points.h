@@ -18,12 +18,12 @@ struct MiddleNode {
   std::array<std::int8_t, 20> nodes{};
 
   int count() const noexcept { return corners == 4 ? 8 : 20; }
-  /// The serendipity shape functions there.
+  /// Returns the serendipity shape functions there.
   double weight(int i) const noexcept { return i < corners ? -0.25 : corners == 4 ? 0.5 : 0.25; }
 };
 
-/// The nodes in the middle that a cell of this shape lacks, to be appended to its own; none of most
-/// shapes.
+/// Returns the nodes in the middle that a cell of this shape lacks, to be appended to its own; none
+/// of most shapes.
 std::span<const MiddleNode> lacking_nodes(CellShape shape) noexcept;
 
 /// Returns the number of points beside its own with which a cell of this shape is cut: those nodes;

@@ -42,7 +42,7 @@ class BlockClassifier {
     }
   }
 
-  /// The primitives that may matter; none and no table: to skip.
+  /// Returns the primitives that may matter; none and no table: to skip.
   bool classify(const DataBox& box, PrimitiveSet& set) const {
     set = {0};
     if (box.vacuum) return false;

@@ -107,8 +107,8 @@ double largest_extinction_of(const TransferFunction& function) {
   return largest;
 }
 
-/// The largest component of the mean color of tables whose extinctions are constant, at most; none
-/// if another term is there.
+/// Returns the largest component of the mean color of tables whose extinctions are constant, at
+/// most; none if another term is there.
 std::optional<double> largest_mean_color(const std::vector<ChannelTransferFunction>& tables) {
   double extinction = 0;
   Rgb<double> emission{};

@@ -25,12 +25,12 @@ class OpacityStretch {
   OpacityStretch(const OpacityPoint& a, const OpacityPoint& b)
       : a_(a), b_(b), width_(b.value - a.value) {}
 
-  /// The depth at v, where the opacity is below 1.
+  /// Returns the depth at v, where the opacity is below 1.
   double depth(double v) const {
     return depth_of(mix(v, a_.opacity, b_.opacity), mix(v, 1 - a_.opacity, 1 - b_.opacity));
   }
 
-  /// A value at which the depth is about that, within the stretch.
+  /// Returns a value at which the depth is about that, within the stretch.
   double value(double depth) const {
     const bool thin = depth < std::numbers::ln2;
     const double at = thin ? -std::expm1(-depth) : std::exp(-depth);

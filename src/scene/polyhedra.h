@@ -24,7 +24,7 @@ class PolygonCut {
  public:
   explicit PolygonCut(const Vec3<double>* points) noexcept : points_(points) {}
 
-  /// The triangles of a face, two less than its points; valid until the next call.
+  /// Returns the triangles of a face, two less than its points; valid until the next call.
   ///
   /// Five and more points lose ears, the best shaped one first, as seen along the mean normal; the
   /// face may be concave there. An ear holds no other point, not even on its sides, so that points

@@ -94,8 +94,8 @@ void check(const std::optional<std::array<double, 2>>& range) {
               ", but must be two ascending numbers up to 2.1e37");
 }
 
-/// The range that a preset in Hounsfield units has for these data; none: its own. `air_value`:
-/// that of air, if they seem to be in those units or a multiple of them.
+/// Returns the range that a preset in Hounsfield units has for these data; none: its own.
+/// `air_value`: that of air, if they seem to be in those units or a multiple of them.
 std::optional<std::array<double, 2>> hounsfield_range(const NamedPreset& preset,
                                                       const VolumeStatistics& data,
                                                       const std::optional<double>& air_value) {

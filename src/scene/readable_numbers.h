@@ -11,7 +11,8 @@ namespace pellucid {
 /// up to the second.
 inline constexpr double largest_number = 1e30, largest_data_value = 2.1e37;
 
-/// The decimal with this many digits behind the point of scientific notation that is nearest.
+/// Returns the decimal with this many digits behind the point of scientific notation that is
+/// nearest.
 inline double rounded(double value, int digits) {
   char text[64];
   const auto end =
@@ -20,7 +21,7 @@ inline double rounded(double value, int digits) {
   return value;
 }
 
-/// The nearest multiple of a power of ten that divides the range into 100 to 1000 parts.
+/// Returns the nearest multiple of a power of ten that divides the range into 100 to 1000 parts.
 inline double readable(double value, double range) {
   if (value == 0) return 0;
   const double digits = std::floor(std::log10(std::abs(value))) - std::floor(std::log10(range)) + 2;

@@ -149,7 +149,7 @@ void check_data(const Scene& scene) {
 
 namespace {
 
-/// A box around the boxes of the visible layers, or of all if none is visible.
+/// Returns a box around the boxes of the visible layers, or of all if none is visible.
 template <class CornersOf>
 std::array<Vec3<double>, 8> corners_of_all(const Scene& scene, const CornersOf& corners_of) {
   const auto visible = [](const Layer& layer) { return layer.visible; };

@@ -38,7 +38,7 @@ class AxisWeights {
     }
   }
 
-  /// The values that count for value i.
+  /// Returns the values that count for value i.
   int first(int i) const noexcept { return std::max(i - reach_, 0); }
   int last(int i) const noexcept { return std::min(i + reach_, last_); }
   /// Returns the weight of value j, one of these, in the sum for value i.
@@ -121,7 +121,7 @@ class SliceSums {
   std::vector<double> sum_, last_;
 };
 
-/// The standard deviation along each axis in data values. Throws Error where there is none.
+/// Returns the standard deviation along each axis in data values. Throws Error where there is none.
 std::array<AxisWeights, 3> make_weights(const Volume& volume, double sigma) {
   const std::string name = volume_name(volume) + ": cannot be smoothed: ";
   if (!(sigma > 0 && std::isfinite(sigma))) {

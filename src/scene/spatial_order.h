@@ -23,8 +23,8 @@ class MortonCurve {
   double steps_ = 0;  ///< per length
 };
 
-/// The numbers from 0 on in the ascending order of their keys, and of themselves where those are
-/// equal: the same for any number of threads. `keys` are used up.
+/// Returns the numbers from 0 on in the ascending order of their keys, and of themselves where
+/// those are equal: the same for any number of threads. `keys` are used up.
 std::vector<std::int32_t> in_order(std::vector<std::uint64_t> keys, const ParallelFor& parallel);
 
 }  // namespace pellucid

@@ -36,8 +36,8 @@ void tell(const SuggestControl& control, double fraction) {
   if (control.progress) control.progress(fraction);
 }
 
-/// Largest number of points of a sample. Square roots of counts make the rarest bins matter: a
-/// fourth of a brain's points gave other materials than all of them.
+/// Returns the largest number of points of a sample. Square roots of counts make the rarest bins
+/// matter: a fourth of a brain's points gave other materials than all of them.
 std::size_t most_sampled(const SuggestControl& control) {
   return std::size_t{1} << (control.quick ? 16 : 24);
 }
@@ -105,8 +105,8 @@ class Boundaries {
     return value_peaks(counts, 0.008 * h_.axes[0].bins, least_prominence, least_share);
   }
 
-  /// The gradients between two materials where they are the most common; no count where hardly any
-  /// value is there.
+  /// Returns the gradients between two materials where they are the most common; no count where
+  /// hardly any value is there.
   ValuePeak ridge(const ValuePeak& lower, const ValuePeak& upper) const {
     const double middle = (lower.center + upper.center) / 2;
     const double reach = (upper.center - lower.center) / 8 + 0.5;
@@ -124,7 +124,7 @@ class Boundaries {
                              [](const auto& a, const auto& b) { return a.count < b.count; });
   }
 
-  /// A primitive with its center and widths in bins.
+  /// Returns a primitive with its center and widths in bins.
   GaussianPrimitive primitive(const std::vector<int>& which, std::array<double, 2> center,
                               std::array<double, 2> widths) const {
     const HistogramAxis &v = h_.axes[0], &g = h_.axes[1];
@@ -147,7 +147,7 @@ class Boundaries {
   double all_;
 };
 
-/// A normal distribution in bins as a primitive.
+/// Returns a normal distribution in bins as a primitive.
 GaussianPrimitive primitive_of(const NormalComponent& component, const std::vector<int>& which,
                                const std::vector<HistogramAxis>& axes) {
   GaussianPrimitive primitive;

@@ -33,8 +33,8 @@ void bin_coordinates(const std::vector<HistogramAxis>& axes, std::size_t place,
 /// Coordinates in bins as values.
 double value_at(const HistogramAxis& axis, double coordinate);
 
-/// The least variance that is told from none, in bins: half a bin, less on axes of few of them,
-/// whose neighbours are different things.
+/// Returns the least variance that is told from none, in bins: half a bin, less on axes of few of
+/// them, whose neighbours are different things.
 double least_variance(const HistogramAxis& axis);
 
 /// Background, which fills the most of the volume: the bins about that of the largest count, grown

@@ -25,7 +25,7 @@ struct ClassedValues {
   double threshold() const {
     return values[classes.foreground - 1] / 2 + values[classes.foreground] / 2;
   }
-  /// The mean of the values [first, last).
+  /// Returns the mean of the values [first, last).
   double mean(std::size_t first, std::size_t last) const;
 
   std::vector<double> values;

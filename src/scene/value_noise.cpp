@@ -81,7 +81,7 @@ class Place {
   std::array<double, 3> slope_{};
 };
 
-/// The mean voxel over the mean step of each axis.
+/// Returns the mean voxel over the mean step of each axis.
 std::array<double, 3> scales(const Volume& volume) {
   std::array<double, 3> step = voxel_edges(volume);
   const double mean = (step[0] + step[1] + step[2]) / 3;
@@ -95,12 +95,12 @@ double sum_of(std::span<const double> weights) {
   return std::accumulate(weights.begin(), weights.end(), 0.0);
 }
 
-/// The share of the range at a place among the bins of differences.
+/// Returns the share of the range at a place among the bins of differences.
 double share_at(double place) {
   return std::exp2(place / per_octave - octaves + 2);
 }
 
-/// A quantile of weighted bins, as a share of the range.
+/// Returns a quantile of weighted bins, as a share of the range.
 double quantile(const Differences& weights, double share) {
   double left = share * sum_of(weights);
   for (std::size_t i = 0; i < difference_bins; ++i) {

@@ -38,7 +38,7 @@ class Hills {
     while (j + 1 < size() && at(j + 1) == at(i)) ++j;
     return j + 1 == size() || at(j + 1) < at(i);
   }
-  /// The lowest place on the way to higher ground; the end where there is none.
+  /// Returns the lowest place on the way to higher ground; the end where there is none.
   int valley(int top, int step) const {
     int lowest = top;
     for (int i = top + step; i >= 0 && i < size(); i += step) {

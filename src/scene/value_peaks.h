@@ -13,8 +13,8 @@ struct ValuePeak {
   double prominence = 0;  ///< log of the top over the higher one of the valleys beside it
 };
 
-/// The hills of counts that were smoothed by a Gaussian of `smoothing` bins, whose prominence is at
-/// least so large and that hold at least this share of all; ascending.
+/// Returns the hills of counts that were smoothed by a Gaussian of `smoothing` bins, whose
+/// prominence is at least so large and that hold at least this share of all; ascending.
 std::vector<ValuePeak> value_peaks(const std::vector<double>& counts, double smoothing,
                                    double least_prominence, double least_share);
 

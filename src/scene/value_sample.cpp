@@ -46,9 +46,9 @@ std::vector<double> value_sample(const Volume& volume) {
 
 namespace {
 
-/// The corners' weights at the n-th of points that fill a tetrahedron evenly: the parts into which
-/// three numbers cut the unit interval, here multiples of the powers of 1/1.2207 (x⁴ = x + 1),
-/// whose fractional parts are even in three dimensions.
+/// Returns the corners' weights at the n-th of points that fill a tetrahedron evenly: the parts
+/// into which three numbers cut the unit interval, here multiples of the powers of 1/1.2207 (x⁴ = x
+/// + 1), whose fractional parts are even in three dimensions.
 std::array<double, 4> even_weights(std::size_t n) {
   constexpr double root = 1.2207440846057596;
   std::array<double, 3> cut{1 / root, 1 / (root * root), 1 / (root * root * root)};

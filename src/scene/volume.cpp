@@ -34,8 +34,8 @@ std::size_t data_size(const VolumeData& data) {
   return std::visit([](const auto& values) { return values.size(); }, data);
 }
 
-/// The planes of a rectilinear axis (GridAxis): the coordinates themselves where the values are
-/// points; first face, centres, last face where they are cells.
+/// Returns the planes of a rectilinear axis (GridAxis): the coordinates themselves where the values
+/// are points; first face, centres, last face where they are cells.
 std::vector<double> make_planes(const std::vector<double>& coordinates, Centering centering) {
   if (coordinates.empty() || centering == Centering::point) return coordinates;
   std::vector<double> planes{coordinates.front()};
@@ -46,8 +46,8 @@ std::vector<double> make_planes(const std::vector<double>& coordinates, Centerin
   return planes;
 }
 
-/// The inverse of m, or nothing where its columns are parallel or vanish. The columns are scaled to
-/// length 1 first, so that no unit of length is too small or too large.
+/// Returns the inverse of m, or nothing where its columns are parallel or vanish. The columns are
+/// scaled to length 1 first, so that no unit of length is too small or too large.
 std::optional<Mat3<double>> checked_inverse(const Mat3<double>& m) {
   Mat3<double> unit;
   std::array<double, 3> norm;

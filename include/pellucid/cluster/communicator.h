@@ -66,11 +66,11 @@ class Communicator {
   long frame_ = 0;
 };
 
-/// A communicator of one rank, which needs no message passing.
+/// Returns a communicator of one rank, which needs no message passing.
 std::unique_ptr<Communicator> single_rank();
 
-/// A communicator over MPI, from a module that is loaded at run time: programs that do not call
-/// these need no MPI. Without a handle it has all ranks of the program (MPI_COMM_WORLD), and
+/// Returns a communicator over MPI, from a module that is loaded at run time: programs that do not
+/// call these need no MPI. Without a handle it has all ranks of the program (MPI_COMM_WORLD), and
 /// initializes MPI if that is not done; then MPI is finalized with the last such object. `handle`
 /// is a communicator of an MPI that is initialized, as Fortran knows it: MPI_Comm_c2f(comm), or
 /// comm.py2f() of mpi4py. It is duplicated, so that no messages mix. MPI's thread level should be

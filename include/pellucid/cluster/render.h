@@ -41,8 +41,8 @@ struct RankReport {
 Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
              const RenderOptions& options = {}, RankReport* report = nullptr);
 
-/// The same of a scene that every rank has whole. Each renders its brick without a copy of the
-/// rest: for tests, and data that are mapped files.
+/// Returns the same of a scene that every rank has whole. Each renders its brick without a copy of
+/// the rest: for tests, and data that are mapped files.
 Image render(Communicator& ranks, const Scene& whole, const RenderOptions& options = {},
              RankReport* report = nullptr);
 

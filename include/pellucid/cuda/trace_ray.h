@@ -19,7 +19,7 @@ inline constexpr double device_left_out_share = 1.0 / 32;
 
 namespace detail {
 
-/// The tolerance of what leaves out some extinction.
+/// Returns the tolerance of what leaves out some extinction.
 PELLUCID_HD inline RayTolerance without_left_out(RayTolerance wanted) noexcept {
   wanted.tolerance *= 1 - device_left_out_share;
   return wanted;

@@ -43,9 +43,9 @@ struct ErrorCheck {
   double tightness_median = 0, tightness_smallest = 0;
 };
 
-/// Largest difference of a pixel's channels against a's error plus b's; where b carries none it
-/// counts as exact but for its rounding to binary32 (2⁻²⁴ of each value). Nothing where a carries
-/// none. Throws Error where the sizes differ.
+/// Returns the largest difference of a pixel's channels against a's error plus b's; where b carries
+/// none it counts as exact but for its rounding to binary32 (2⁻²⁴ of each value). Nothing where a
+/// carries none. Throws Error where the sizes differ.
 std::optional<ErrorCheck> check_errors(const Image& a, const Image& b);
 
 /// Pixels with a channel that differs by more than the tolerance or is not finite in one image.
@@ -54,8 +54,8 @@ std::size_t pixels_over(const Image& a, const Image& b, double tolerance);
 /// |a − b| per channel, of the same size; NaN where it is not finite.
 Image difference_image(const Image& a, const Image& b);
 
-/// An opaque grey picture of the largest of the four channels' |a − b| times `scale`, cut off at 1;
-/// 1 where it is not finite.
+/// Returns an opaque grey picture of the largest of the four channels' |a − b| times `scale`, cut
+/// off at 1; 1 where it is not finite.
 Image difference_picture(const Image& a, const Image& b, double scale);
 
 }  // namespace pellucid

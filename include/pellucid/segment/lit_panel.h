@@ -342,7 +342,8 @@ class LitPanel {
                    layer.gradient_opacity->interval(layer.magnitude.hull_max()));
   }
 
-  /// The extinction of all layers, and the color whose product with it is the sum of sources.
+  /// Returns the extinction of all layers, and the color whose product with it is the sum of
+  /// sources.
   PELLUCID_HD Material<T> material(T u) const noexcept {
     T extinction = T(0);
     Rgb<T> emission{};

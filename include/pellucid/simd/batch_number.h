@@ -297,7 +297,7 @@ PELLUCID_ALWAYS_INLINE Batch<To, N> convert(Batch<From, N> x) noexcept {
   }
 }
 
-/// The floats whose bits these are.
+/// Returns the floats whose bits these are.
 template <int N>
 PELLUCID_ALWAYS_INLINE Batch<float, N> float_of_bits(Batch<std::int32_t, N> x) noexcept {
   using Native = detail::Native<N>;

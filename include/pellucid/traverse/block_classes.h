@@ -61,7 +61,7 @@ struct SmoothBlocks {
 /// Cells; half the width of a block.
 inline constexpr double longest_sampled_step = 4;
 inline constexpr int most_sampled_step_levels = 11;
-/// The length of a level's steps, of that of the longest.
+/// Returns the length of a level's steps, of that of the longest.
 constexpr float sampled_step_share(int level) noexcept {
   return (level % 2 == 0 ? 1 : 0.7071068f) / static_cast<float>(1 << level / 2);
 }

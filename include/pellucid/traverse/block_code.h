@@ -5,10 +5,10 @@
 
 namespace pellucid {
 
-/// The largest float that is not above x, infinities included; x is no NaN. Where the nearest float
-/// is above, its predecessor f - (φ|f| + η) (Rump, Zimmermann, Boldo, Melquiond, "Computing
-/// predecessor and successor in rounding to nearest", BIT 49, 2009): exact, but where |f| lies from
-/// 2^-126 to 2^-124, where it may be one further down.
+/// Returns the largest float that is not above x, infinities included; x is no NaN. Where the
+/// nearest float is above, its predecessor f - (φ|f| + η) (Rump, Zimmermann, Boldo, Melquiond,
+/// "Computing predecessor and successor in rounding to nearest", BIT 49, 2009): exact, but where
+/// |f| lies from 2^-126 to 2^-124, where it may be one further down.
 PELLUCID_HD inline float float_below(double x) noexcept {
   constexpr double largest = std::numeric_limits<float>::max();
   if (x > largest) return std::numeric_limits<float>::max();
@@ -22,8 +22,8 @@ PELLUCID_HD inline float float_above(double x) noexcept {
   return -float_below(-x);
 }
 
-/// The upper half of the least float, of those that are 0 in their lower half, that is not below
-/// x >= 0; infinite where there is none, and for NaN.
+/// Returns the upper half of the least float, of those that are 0 in their lower half, that is not
+/// below x >= 0; infinite where there is none, and for NaN.
 PELLUCID_HD inline std::uint16_t upper_half_above(double x) noexcept {
   constexpr std::uint16_t infinity = 0x7f80;
   if (!(x <= static_cast<double>(std::numeric_limits<float>::max()))) return infinity;
@@ -31,9 +31,9 @@ PELLUCID_HD inline std::uint16_t upper_half_above(double x) noexcept {
   return static_cast<std::uint16_t>((bits + 0xffff) >> 16);
 }
 
-/// A code whose number is not above x, which lies between the volume's minimum and maximum: the
-/// largest such, or one close below where its number is a rounding error from x; exact where codes
-/// are.
+/// Returns a code whose number is not above x, which lies between the volume's minimum and maximum:
+/// the largest such, or one close below where its number is a rounding error from x; exact where
+/// codes are.
 PELLUCID_HD inline std::uint16_t code_below(const BlockCode& code, double x) noexcept {
   if (!(code.step > 0)) return 0;
   int c =
@@ -41,7 +41,7 @@ PELLUCID_HD inline std::uint16_t code_below(const BlockCode& code, double x) noe
   while (c > 0 && code.value(c) > x) --c;
   return static_cast<std::uint16_t>(c);
 }
-/// The same from above.
+/// Returns the same from above.
 PELLUCID_HD inline std::uint16_t code_above(const BlockCode& code, double x) noexcept {
   if (!(code.step > 0)) return 0;
   int c =
@@ -50,7 +50,7 @@ PELLUCID_HD inline std::uint16_t code_above(const BlockCode& code, double x) noe
   return static_cast<std::uint16_t>(c);
 }
 
-/// The code for data from minimum to maximum, finite; `integral`: whole numbers.
+/// Returns the code for data from minimum to maximum, finite; `integral`: whole numbers.
 PELLUCID_HD inline BlockCode make_block_code(double minimum, double maximum,
                                              bool integral) noexcept {
   BlockCode code{minimum, 0, 0};

@@ -54,7 +54,7 @@ struct BlockCode {
   PELLUCID_HD constexpr double value(int code) const noexcept { return minimum + code * step; }
 };
 
-/// The float whose upper half this is.
+/// Returns the float whose upper half this is.
 PELLUCID_HD inline float from_upper_half(std::uint16_t half) noexcept {
   return __builtin_bit_cast(float, static_cast<std::uint32_t>(half) << 16);
 }

@@ -42,8 +42,8 @@ class BlockWalk {
     }
   }
 
-  /// The next block; false behind the last one. With classes, blocks to skip come as the part of
-  /// their cube that the ray crosses.
+  /// Finds the next block; false behind the last one. With classes, blocks to skip come as the part
+  /// of their cube that the ray crosses.
   PELLUCID_HD bool next(const BlockClass* classes, BlockStep& step) noexcept {
     if (!(t_ < end_)) return false;
     // A plane at t_ was reached together with the last one. The last plane of an axis is not met
@@ -88,8 +88,8 @@ class BlockWalk {
     return next_[2] < next_[a] ? 2 : a;
   }
 
-  /// The last n >= first, < last, whose plane is not beyond t_ (where the ray does not move: above
-  /// the origin); first where there is none.
+  /// Returns the last n >= first, < last, whose plane is not beyond t_ (where the ray does not
+  /// move: above the origin); first where there is none.
   PELLUCID_HD int last_behind(int a, int first, int last) const noexcept {
     const auto behind = [&](int n) noexcept {
       return direction_[a] == 0 ? blocks_.axis[a].plane(n) <= origin_[a] : plane_t(a, n) <= t_;

@@ -136,7 +136,7 @@ class BlockRecorder {
     return is_nan(static_cast<double>(all));
   }
 
-  /// The extent of of(corner) over the first nx × ny × nz corners. A NaN does not count.
+  /// Returns the extent of of(corner) over the first nx × ny × nz corners. A NaN does not count.
   template <class Of>
   PELLUCID_HD Extent extent(int nx, int ny, int nz, Of&& of) const noexcept {
     Extent e;
@@ -337,9 +337,9 @@ PELLUCID_HD inline void find_block_planes(const GridAxis<double>& axis, double* 
   planes[blocks] = axis.plane(axis.cells());
 }
 
-/// The least distance of two planes of an axis that have cells on both sides, of all planes where
-/// there are no two: a ray that moves by d along the axis meets at most d / this + 1 planes at
-/// which the data's derivative can jump.
+/// Returns the least distance of two planes of an axis that have cells on both sides, of all planes
+/// where there are no two: a ray that moves by d along the axis meets at most d / this + 1 planes
+/// at which the data's derivative can jump.
 PELLUCID_HD inline double least_plane_distance(const GridAxis<double>& axis) noexcept {
   const int cells = axis.cells();
   const bool inner = cells > 2;

@@ -57,7 +57,7 @@ struct SeenFace {
   }
 };
 
-/// The points of a face, in their order in the tetrahedron.
+/// Returns the points of a face, in their order in the tetrahedron.
 PELLUCID_HD constexpr int corner_of_face(int face, int i) noexcept {
   return i < face ? i : i + 1;
 }

@@ -41,11 +41,11 @@ class MeshWalk {
     see_ahead(load);
   }
 
-  /// The face that was reached last.
+  /// Returns the face that was reached last.
   PELLUCID_HD const SeenFace<T>& face() const noexcept { return face_; }
-  /// The tetrahedron that lies ahead of it, as its face there; `outside`: none does.
+  /// Returns the tetrahedron that lies ahead of it, as its face there; `outside`: none does.
   PELLUCID_HD Index ahead() const noexcept { return code_; }
-  /// The face as the tetrahedron gone through last has it.
+  /// Returns the face as the tetrahedron gone through last has it.
   PELLUCID_HD Index left_by() const noexcept { return left_by_; }
   /// Which corner of the face before has given way to the new point: drop[i], corner i.
   const Mask* dropped() const noexcept { return drop_; }

@@ -17,7 +17,7 @@ struct CubicSpan {
   PELLUCID_HD T length() const noexcept { return static_cast<T>(t_end - t_begin); }
 };
 
-/// The span of one step of a walk; false where the cell has a NaN corner: vacuum.
+/// Returns the span of one step of a walk; false where the cell has a NaN corner: vacuum.
 template <class T, class Value>
 PELLUCID_HD bool make_span(const StructuredGrid<Value, double>& grid,
                            const StructuredWalk<double>::Step& step, CubicSpan<T>& span) noexcept {

@@ -6,8 +6,8 @@
 
 namespace pellucid {
 
-/// The part of a ray (in grid coordinates) that lies in the grid and in range; empty where it
-/// misses. A ray that would stay in the grid forever (no direction, or one so small that every t
+/// Returns the part of a ray (in grid coordinates) that lies in the grid and in range; empty where
+/// it misses. A ray that would stay in the grid forever (no direction, or one so small that every t
 /// overflows) misses too: it has no end that an integral could be taken to.
 template <class T>
 PELLUCID_HD inline Interval<T> grid_interval(const GridAxis<T> (&axis)[3], const Ray<T>& ray_grid,
@@ -73,7 +73,7 @@ class StructuredWalk {
   /// Returns the remainder of the ray, which the remaining steps cover exactly.
   PELLUCID_HD Interval<T> remaining() const noexcept { return {t_, end_}; }
 
-  /// The next cell; false behind the last one.
+  /// Finds the next cell; false behind the last one.
   PELLUCID_HD bool next(Step& step) noexcept {
     if (!hits()) return false;
     int a = nearest();
@@ -105,9 +105,9 @@ class StructuredWalk {
     return next_[2] < next_[a] ? 2 : a;
   }
 
-  /// The number of planes behind t_, less one; of planes not above the origin where the ray does
-  /// not move. Counted along the ray; t_ lies between the first plane and the last. By bisection,
-  /// which on a uniform axis has nothing left to do where the rounded position is right.
+  /// Returns the number of planes behind t_, less one; of planes not above the origin where the ray
+  /// does not move. Counted along the ray; t_ lies between the first plane and the last. By
+  /// bisection, which on a uniform axis has nothing left to do where the rounded position is right.
   PELLUCID_HD int first_cell(int a) const noexcept {
     const int cells = axis_[a].cells();
     const bool reversed = direction_[a] < T(0);

@@ -10,7 +10,7 @@
 namespace pellucid {
 namespace {
 
-/// The part of a pixel's ray that is followed.
+/// Returns the part of a pixel's ray that is followed.
 RayPart part_of(const Frame& frame, const DepthRequest& request) {
   RayPart part{frame.camera.ray(request.column, request.row)};
   if (frame.scene.backdrop) {

@@ -27,7 +27,7 @@ std::vector<const Layer*> visible_layers(const Scene& scene, bool projected) {
   return layers;
 }
 
-/// Length of a ray that no data are longer than.
+/// Returns the length of a ray that no data are longer than.
 double reach(const std::vector<const Layer*>& layers) {
   double longest = 0;
   for (const Layer* layer : layers) {
@@ -46,7 +46,7 @@ double negligible_extinction(const std::vector<const Layer*>& layers, const RayT
           std::max(wanted.largest_color, 1.0) * std::max(static_cast<double>(layers.size()), 1.0));
 }
 
-/// The pixels that may see a box, given by its corners.
+/// Returns the pixels that may see a box, given by its corners.
 PixelBox pixels_of(const CameraFrame<double>& camera, const std::array<Vec3<double>, 8>& corners) {
   const PixelBox all{0, camera.width, 0, camera.height};
   const double right = dot(camera.right, camera.right), up = dot(camera.up, camera.up);

@@ -15,7 +15,7 @@
 namespace pellucid {
 namespace {
 
-/// The mean of a pixel's rays.
+/// Returns the mean of a pixel's rays.
 RayResult mean_of(const RayResult* rays, int count) {
   PixelMean mean;
   for (int n = 0; n < count; ++n) mean.add(rays[n]);
@@ -26,7 +26,7 @@ struct Place {
   int column, row;
 };
 
-/// The pixels of a tile, 4 × 4 after 4 × 4, so that those of a packet lie together.
+/// Returns the pixels of a tile, 4 × 4 after 4 × 4, so that those of a packet lie together.
 std::vector<Place> places_of(const Tile& tile) {
   constexpr int group = 4;
   std::vector<Place> places;

@@ -34,7 +34,7 @@ class ScreenMask {
   bool marked(int column, int row) const noexcept {
     return marked_[index(column >> log2_of_square_, row >> log2_of_square_)] != 0;
   }
-  /// The share of the squares that are not marked.
+  /// Returns the share of the squares that are not marked.
   double clear_share() const noexcept;
 
  private:

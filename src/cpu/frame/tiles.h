@@ -12,9 +12,9 @@ namespace pellucid {
 /// rays fit.
 inline constexpr int tile_edge = 16;
 
-/// All tiles of a frame, each pixel in exactly one: the levels from coarse to fine, each from the
-/// middle of the image outwards, where what takes long tends to come first and neighbours share
-/// data.
+/// Returns all tiles of a frame, each pixel in exactly one: the levels from coarse to fine, each
+/// from the middle of the image outwards, where what takes long tends to come first and neighbours
+/// share data.
 std::vector<Tile> make_tiles(ImageSize size, int preview);
 
 /// Squares of the pixels whose columns and rows are multiples of `stride`.

@@ -27,8 +27,8 @@ double size_of_terms(const Gaussian<double>& g, const double* largest) {
 /// 3e-8: a thirtieth of what is charged for binary32.
 constexpr double largest_size = 1e7;
 
-/// The square of the distance |K (v - c)| from which on e^(-|K (v - c)|²) is below e^-exponent,
-/// as it is found in binary32 of data no larger than this.
+/// Returns the square of the distance |K (v - c)| from which on e^(-|K (v - c)|²) is below
+/// e^-exponent, as it is found in binary32 of data no larger than this.
 float square_in_float(double size, double exponent) {
   // Binary32 has the fourth power of it.
   if (!(size < 1e9)) return std::numeric_limits<float>::quiet_NaN();

@@ -39,7 +39,7 @@ class MeshFieldStorage {
     return result;
   }
 
-  /// The mesh's points with the values of the first channel.
+  /// Returns the mesh's points with the values of the first channel.
   std::vector<MeshPoint> points(const std::vector<Vec3<double>>& positions) const {
     std::vector<MeshPoint> points(positions.size());
     const MeshField& first = fields_.channel[0];

@@ -21,7 +21,8 @@ bool is_extreme(LayerProjection projection) {
   return projection <= LayerProjection::minimum;
 }
 
-/// The half-spaces of a region as clips, which cut neighboring regions at the same positions.
+/// Returns the half-spaces of a region as clips, which cut neighboring regions at the same
+/// positions.
 std::vector<Clip> clips_of_region(const RayRegion& region) {
   std::vector<Clip> clips;
   for (const RayRegion::HalfSpace& half : region.half_spaces) {

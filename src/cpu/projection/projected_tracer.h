@@ -24,7 +24,7 @@ class ProjectedTracer : public RayTracer {
                                const TraceOptions& options) const override {
     return trace(parts, options, nullptr);
   }
-  /// The same; `values`, unless null, receives the value of the last layer along each ray.
+  /// Returns the same; `values`, unless null, receives the value of the last layer along each ray.
   std::vector<RayResult> trace(const std::vector<RayPart>& parts, const TraceOptions& options,
                                std::vector<double>* values) const;
 

@@ -10,10 +10,10 @@
 
 namespace pellucid {
 
-/// The length of a column of K.
+/// Returns the length of a column of K.
 double column_norm(const Gaussian<double>& g, int channel);
 
-/// The same primitive in binary32.
+/// Returns the same primitive in binary32.
 Gaussian<float> rounded_to_binary32(const Gaussian<double>& g);
 
 /// Owns what a SampledMultivariate refers to. Not copied, for the view refers to it.

@@ -47,7 +47,7 @@ double voxel_of_steps(const Layer& layer) {
   return volume != nullptr ? volume->voxel_size() : voxel_of(layer);
 }
 
-/// Least and largest value of a layer's first channel.
+/// Returns the least and largest value of a layer's first channel.
 Interval<double> range_of(const Layer& layer) {
   if (const auto* const mesh = std::get_if<MeshContent>(&layer.content)) {
     const auto& data = mesh->mesh->statistics(0);
