@@ -16,9 +16,9 @@
 namespace pellucid {
 namespace {
 
-/// Returns the calling thread's arena of so many threads. oneTBB keeps some 50 kB of each arena that
-/// is destroyed until all workers have left it, which takes long where other work keeps the cores
-/// busy; so they are made once.
+/// Returns the calling thread's arena of so many threads. oneTBB keeps some 50 kB of each arena
+/// that is destroyed until all workers have left it, which takes long where other work keeps the
+/// cores busy; so they are made once.
 tbb::task_arena& arena_of(int threads) {
   thread_local std::map<int, tbb::task_arena> arenas;
   return arenas.try_emplace(threads, threads).first->second;
