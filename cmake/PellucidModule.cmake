@@ -86,15 +86,31 @@ function(pellucid_first_sources result target)
   else()
     set(${result} ${arg_SOURCES} ${arg_LATER} PARENT_SCOPE)
   endif()
-  if(arg_LATER)
-    set_property(GLOBAL APPEND PROPERTY PELLUCID_FIRST_TARGETS ${target})
-    set_property(GLOBAL PROPERTY PELLUCID_LATER_${target} ${arg_LATER})
+  if(arg_LATER OR arg_INSTEAD)
+    get_property(targets GLOBAL PROPERTY PELLUCID_FIRST_TARGETS)
+    if(NOT target IN_LIST targets)
+      set_property(GLOBAL APPEND PROPERTY PELLUCID_FIRST_TARGETS ${target})
+    endif()
+    set_property(GLOBAL APPEND PROPERTY PELLUCID_LATER_${target} ${arg_LATER})
     list(TRANSFORM arg_INSTEAD PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/")
     set_property(GLOBAL APPEND PROPERTY PELLUCID_INSTEAD ${arg_INSTEAD})
   endif()
 endfunction()
 
-# pellucid_library(NAME SOURCES file... [LATER file...] [INSTEAD file...] [DEPENDS NAME...]
+# pellucid_add_sources(TARGET FOLDER [SOURCES file...] [LATER file...] [INSTEAD file...]): further
+# files of a target of this folder, which lie in its sub-folder FOLDER, as of
+# pellucid_first_sources().
+function(pellucid_add_sources target folder)
+  cmake_parse_arguments(arg "" "" "SOURCES;LATER;INSTEAD" ${ARGN})
+  foreach(list IN ITEMS SOURCES LATER INSTEAD)
+    list(TRANSFORM arg_${list} PREPEND "${folder}/")
+  endforeach()
+  pellucid_first_sources(sources ${target}
+    SOURCES ${arg_SOURCES} LATER ${arg_LATER} INSTEAD ${arg_INSTEAD})
+  target_sources(${target} PRIVATE ${sources})
+endfunction()
+
+# pellucid_library(NAME [SOURCES file...] [LATER file...] [INSTEAD file...] [DEPENDS NAME...]
 # [PRIVATE target...] [LEVEL option]): the folders src/NAME and include/pellucid/NAME as the
 # compiled library pellucid::NAME, its files as of pellucid_first_sources(). It is static, so
 # whoever links it links its PRIVATE targets too (PellucidInstall); those that are headers alone

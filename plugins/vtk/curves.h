@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "foreign_shaped.h"
 #include "kept.h"
 #include "notes.h"
 #include "pellucid/math/rgb.h"
+#include "transfer_functions/foreign_shaped.h"
 
 class vtkColorTransferFunction;
 class vtkPiecewiseFunction;

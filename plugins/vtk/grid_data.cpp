@@ -18,7 +18,7 @@
 
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/hidden_values.h"
-#include "vtk_values.h"
+#include "vtk/module/vtk_values.h"
 
 namespace pellucid::plugin {
 namespace {

@@ -26,9 +26,9 @@ function(pellucid_vtk_mappers target)
   add_library(${target} OBJECT
     ${sources}
     # Arrays and cells of VTK are taken as by the readers of its files.
-    "${PROJECT_SOURCE_DIR}/src/io/vtk_cells.cpp"
-    "${PROJECT_SOURCE_DIR}/src/io/vtk_gather.cpp"
-    "${PROJECT_SOURCE_DIR}/src/io/vtk_values.cpp")
+    "${PROJECT_SOURCE_DIR}/src/io/vtk/vtk_cells.cpp"
+    "${PROJECT_SOURCE_DIR}/src/io/vtk/module/vtk_gather.cpp"
+    "${PROJECT_SOURCE_DIR}/src/io/vtk/module/vtk_values.cpp")
   set_target_properties(${target} PROPERTIES
     POSITION_INDEPENDENT_CODE ON
     CXX_EXTENSIONS OFF

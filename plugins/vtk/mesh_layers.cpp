@@ -20,7 +20,7 @@
 #include "pellucid/scene/cut_cells.h"
 #include "pellucid/scene/error.h"
 #include "view.h"
-#include "vtk_gather.h"
+#include "vtk/module/vtk_gather.h"
 
 namespace pellucid::plugin {
 namespace {

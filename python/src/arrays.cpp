@@ -8,8 +8,8 @@
 #include <string_view>
 #include <utility>
 
-#include "components.h"
-#include "volume_source.h"
+#include "volumes/components.h"
+#include "volumes/volume_source.h"
 
 namespace pellucid::python {
 

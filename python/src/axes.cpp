@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "axis_meaning.h"
+#include "axes/axis_meaning.h"
+#include "axes/grid_axes.h"
+#include "axes/value_meaning.h"
 #include "common.h"
-#include "grid_axes.h"
-#include "value_meaning.h"
 
 namespace pellucid::python {
 

@@ -3,10 +3,10 @@
 #include <utility>
 
 #include "common.h"
-#include "foreign_shaped.h"
 #include "handles.h"
 #include "pellucid/io/export_transfer_function.h"
 #include "pellucid/io/import_transfer_function.h"
+#include "transfer_functions/foreign_shaped.h"
 
 namespace pellucid::python {
 

@@ -6,10 +6,10 @@
 
 #include "arrays.h"
 #include "handles.h"
-#include "mesh_blocks.h"
+#include "meshes/mesh_blocks.h"
 #include "pellucid/io/mesh_source.h"
 #include "pellucid/scene/cut_cells.h"
-#include "vtk_cells.h"
+#include "vtk/vtk_cells.h"
 
 namespace pellucid::python {
 

@@ -6,13 +6,13 @@
 #include <string>
 #include <utility>
 
-#include "array_axes.h"
 #include "arrays.h"
+#include "axes/array_axes.h"
 #include "handles.h"
 #include "pellucid/io/write_volume.h"
 #include "pellucid/scene/builtin_fields.h"
 #include "pellucid/scene/derived_channels.h"
-#include "volume_axes.h"
+#include "volumes/volume_axes.h"
 
 namespace pellucid::python {
 

@@ -3,13 +3,13 @@
 // Stands in for the sources that builds for a first picture leave out (PELLUCID_FIRST_PICTURE).
 #include "pellucid/scene/left_out.h"
 
-#include "grid_axes.h"
+#include "axes/grid_axes.h"
+#include "axes/positions_beside.h"
 #include "pellucid/io/color_bar.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/import_transfer_function.h"
 #include "pellucid/io/mesh_source.h"
 #include "pellucid/io/read_mesh.h"
-#include "positions_beside.h"
 
 namespace pellucid {
 

@@ -10,8 +10,8 @@
 #include <string_view>
 
 #include "pellucid/scene/error.h"
-#include "src/io/dicom_elements.h"
-#include "src/io/dicom_frames.h"
+#include "src/io/dicom/dicom_elements.h"
+#include "src/io/dicom/dicom_frames.h"
 
 namespace {
 

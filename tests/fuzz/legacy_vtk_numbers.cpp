@@ -2,7 +2,7 @@
 
 // The numbers in the text of VTK's legacy files: any bytes pass, or give an Error of one line.
 
-#include "src/io/legacy_vtk_numbers.h"
+#include "src/io/vtk/legacy_vtk_numbers.h"
 
 #include <cstddef>
 #include <cstdint>

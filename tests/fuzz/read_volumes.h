@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "pellucid/scene/error.h"
-#include "src/io/components.h"
-#include "src/io/volume_source.h"
+#include "src/io/volumes/components.h"
+#include "src/io/volumes/volume_source.h"
 
 namespace pellucid::fuzz {
 

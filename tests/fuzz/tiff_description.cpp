@@ -12,12 +12,12 @@
 #include <string_view>
 
 #include "pellucid/scene/error.h"
-#include "src/io/acquisition_text.h"
-#include "src/io/imagej_text.h"
-#include "src/io/name_series.h"
-#include "src/io/ome_xml.h"
-#include "src/io/page_layout.h"
-#include "src/io/shaped_text.h"
+#include "src/io/stacks/acquisition_text.h"
+#include "src/io/stacks/imagej_text.h"
+#include "src/io/stacks/name_series.h"
+#include "src/io/stacks/ome_xml.h"
+#include "src/io/stacks/page_layout.h"
+#include "src/io/stacks/shaped_text.h"
 
 namespace {
 

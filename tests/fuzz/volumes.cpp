@@ -4,8 +4,8 @@
 // line.
 
 #include "read_volumes.h"
-#include "src/io/medical_volumes.h"
-#include "src/io/mrc.h"
+#include "src/io/mrc/mrc.h"
+#include "src/io/volumes/medical_volumes.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   pellucid::fuzz::read_volumes(data, size, [](const pellucid::ByteSource& source) {

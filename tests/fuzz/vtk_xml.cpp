@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "pellucid/scene/error.h"
-#include "src/io/vtk_xml_check.h"
+#include "src/io/vtk/xml/vtk_xml_check.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

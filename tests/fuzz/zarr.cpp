@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "pellucid/scene/error.h"
-#include "src/io/ome_zarr.h"
-#include "src/io/zarr_codecs.h"
-#include "src/io/zarr_metadata.h"
+#include "src/io/zarr/ome_zarr.h"
+#include "src/io/zarr/zarr_codecs.h"
+#include "src/io/zarr/zarr_metadata.h"
 
 namespace {
 

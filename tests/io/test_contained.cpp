@@ -15,7 +15,7 @@
 
 #include "pellucid/scene/error.h"
 #include "sanitized.h"
-#include "src/io/contained.h"
+#include "src/io/process/contained.h"
 
 namespace pellucid::test_contained {
 namespace {

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "src/io/gzip_source.h"
+#include "src/io/files/gzip_source.h"
 #include "volume_files.h"
 
 namespace pellucid::test_gzip_source {

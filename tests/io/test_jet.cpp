@@ -10,8 +10,8 @@
 #include <string>
 
 #include "../support/accuracy.h"
-#include "src/io/foreign_curves.h"
-#include "src/io/jet.h"
+#include "src/io/transfer_functions/foreign_curves.h"
+#include "src/io/transfer_functions/jet.h"
 
 namespace pellucid::foreign::test_jet {
 namespace {

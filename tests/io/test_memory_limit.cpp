@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "src/io/memory_limit.h"
+#include "src/io/files/memory_limit.h"
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -11,7 +11,7 @@
 
 #include "sanitized.h"
 #include "scratch_folder.h"
-#include "src/io/components.h"
+#include "src/io/volumes/components.h"
 
 namespace pellucid::test_memory_limit {
 namespace {

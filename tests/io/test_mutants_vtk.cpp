@@ -17,7 +17,7 @@
 #include "volume_files.h"
 
 #ifdef PELLUCID_HAVE_VTK
-#include "src/io/vtk_module.h"
+#include "src/io/vtk/vtk_module.h"
 #endif
 
 // Damaged files of VTK's formats and of meshes, as `info` reads them.

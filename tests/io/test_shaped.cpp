@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "pellucid/scene/error.h"
-#include "src/io/foreign_shaped.h"
+#include "src/io/transfer_functions/foreign_shaped.h"
 
 namespace pellucid::foreign::test_shaped {
 namespace {

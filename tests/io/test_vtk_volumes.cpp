@@ -8,7 +8,7 @@
 #include "mesh_files.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/io/read_volume.h"
-#include "src/io/volume_axes.h"
+#include "src/io/volumes/volume_axes.h"
 #include "tests/support/test_data.h"
 #include "volume_files.h"
 

@@ -60,9 +60,9 @@ struct ImportedTransferFunction {
 /// | ANARI transferFunction1D, JSON | the specification, 4.5; positions as VisRTX has them |
 /// | color tables, CSV | rows r,g,b[,a] or value,r,g,b[,a] |
 ///
-/// src/io/foreign_curves.h has the formulas with their sources. `name` (the file's) opens every
-/// message. Throws Error, with one line that names the position, if the text has none of these
-/// formats, or numbers are not finite, not in order or out of range.
+/// src/io/transfer_functions/foreign_curves.h has the formulas with their sources. `name` (the
+/// file's) opens every message. Throws Error, with one line that names the position, if the text
+/// has none of these formats, or numbers are not finite, not in order or out of range.
 ImportedTransferFunction import_transfer_function(std::string_view text, const std::string& name,
                                                   const ImportOptions& options = {});
 /// Reads the same from a file of at most 64 MiB.

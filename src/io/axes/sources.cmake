@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: Apache-2.0
+pellucid_io_sources(
+  SOURCES
+    array_axes.cpp
+  LATER
+    axis_meaning.cpp
+    axis_role.cpp
+    grid_axes.cpp
+    length_units.cpp
+    position_names.cpp
+    positions_beside.cpp
+    time_steps.cpp
+    value_meaning.cpp
+    variable_notes.cpp
+  LOOPS
+    array_axes.cpp
+    value_meaning.cpp)

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+pellucid_io_sources(
+  SOURCES
+    atomic_file.cpp
+    bzip2_inflater.cpp
+    data_stream.cpp
+    gzip_source.cpp
+    input_file.cpp
+    mapped_file.cpp
+    memory_limit.cpp
+    zlib_inflater.cpp
+  LATER
+    gzip_writer.cpp
+    numbered_files.cpp
+    temporary_folder.cpp
+    zip_archive.cpp
+  LOOPS
+    bzip2_inflater.cpp
+    gzip_source.cpp
+    gzip_writer.cpp
+    zlib_inflater.cpp)
+
+find_package(BZip2)
+if(BZip2_FOUND)
+  set_property(SOURCE files/bzip2_inflater.cpp
+    APPEND PROPERTY COMPILE_DEFINITIONS PELLUCID_HAVE_BZIP2)
+  target_link_libraries(pellucid_io PRIVATE BZip2::BZip2)
+  set_property(TARGET pellucid_io PROPERTY PELLUCID_BZIP2 ON)
+else()
+  message(STATUS "bzip2 was not found: NRRD compressed with it is not read")
+endif()

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "meshes/mesh_blocks.h"
+#include "volumes/components.h"
+
+namespace pellucid {
+
+/// An array of a VTKHDF file.
+struct VtkHdfArray {
+  enum class Place : std::uint8_t { root, point, cell } place = Place::root;
+  std::string name;
+  std::string type;                 ///< that its values are kept in
+  std::vector<std::int64_t> sides;  ///< in the file's order, at most four
+  std::string fault;                ///< why it cannot be read; empty: it can
+};
+
+/// Contents of the group VTKHDF of a file.
+struct VtkHdfContents {
+  std::string type;  ///< "ImageData" …; empty: there is no such group
+  std::int64_t version = 0;
+  std::int64_t steps = 0;                                  ///< in time; 0: it knows no time
+  std::vector<double> extent, origin, spacing, direction;  ///< as many numbers as there are
+  std::string point_scalars, cell_scalars;                 ///< the active ones
+  std::vector<VtkHdfArray> arrays;
+  std::string error;
+};
+
+/// Which values of an array are read, and where they go.
+struct VtkHdfWanted {
+  VtkHdfArray array;
+  std::optional<std::int64_t> component;  ///< of the last axis; none: all values
+  std::optional<IndexBox> box;            ///< of the three axes in front, x first; none: all
+  std::span<std::byte> to;
+};
+
+/// The functions of HDF5's module, by these names. They are called in a process of their own, for
+/// the library does not stand any file that is damaged. No exception leaves them.
+using ListVtkHdf = void(const std::filesystem::path& path, VtkHdfContents& answer);
+using ReadVtkHdf = void(const std::filesystem::path& path, std::span<const VtkHdfWanted> wanted,
+                        std::string& error);
+inline constexpr const char* list_vtk_hdf_name = "pellucid_list_vtk_hdf_1";
+inline constexpr const char* read_vtk_hdf_name = "pellucid_read_vtk_hdf_2";
+
+/// Returns the contents of a file; nothing if it is no VTKHDF file. Asks HDF5 only where the first
+/// bytes, or the name, are of that kind. Throws Error where HDF5 cannot read it, or the build has
+/// none.
+std::optional<VtkHdfContents> vtk_hdf_contents(const std::filesystem::path& path);
+/// Returns the same of a file that is one. Throws Error for kinds, versions and steps that are not
+/// read.
+VtkHdfContents vtk_hdf_contents(const std::filesystem::path& path, const char* type);
+/// Returns the type of the file's data; empty: it is none, or cannot be read.
+std::string vtk_hdf_type(const std::filesystem::path& path);
+
+/// The values of arrays one behind the other, each from a multiple of 8 bytes on.
+class VtkHdfValues {
+ public:
+  /// Without the values.
+  explicit VtkHdfValues(std::filesystem::path path) : path_(std::move(path)) {}
+  /// Returns the number by which its values are asked for.
+  std::size_t want(const VtkHdfArray& array, std::optional<std::int64_t> component = {},
+                   const std::optional<IndexBox>& box = {});
+  /// Reads all that is wanted. Throws Error, also where memory does not hold it.
+  void read();
+  /// Returns the values, in the array's type, in place: they live as long as anyone has them.
+  VolumeData operator[](std::size_t number) const;
+
+ private:
+  struct Entry {
+    VtkHdfArray array;
+    std::optional<std::int64_t> component;
+    std::optional<IndexBox> box;
+    std::size_t count, offset;
+  };
+  std::filesystem::path path_;
+  std::vector<Entry> entries_;
+  std::size_t bytes_ = 0;
+  std::shared_ptr<std::byte> all_;
+};
+
+/// ImageData.
+VolumeFile open_vtk_hdf(const std::filesystem::path& path, const ReadOptions& options);
+std::vector<VolumeArray> list_vtk_hdf_arrays(const std::filesystem::path& path);
+/// UnstructuredGrid, each piece a block.
+MeshBlocks read_vtk_hdf(const std::filesystem::path& path, const MeshReadOptions& options);
+
+}  // namespace pellucid

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+pellucid_io_sources(
+  SOURCES
+    display_bytes.cpp
+    image_checks.cpp
+    png_file.cpp
+    values_npy.cpp
+  LATER
+    color_bar.cpp
+    exr_file.cpp
+  LOOPS
+    display_bytes.cpp
+    exr_file.cpp
+    png_file.cpp)
+
+# Text over pictures.
+if(PELLUCID_WITH_CAIRO)
+  find_path(PELLUCID_CAIRO_INCLUDE_DIR cairo.h PATH_SUFFIXES cairo)
+  find_library(PELLUCID_CAIRO_LIBRARY cairo)
+  mark_as_advanced(PELLUCID_CAIRO_INCLUDE_DIR PELLUCID_CAIRO_LIBRARY)
+  if(PELLUCID_CAIRO_INCLUDE_DIR AND PELLUCID_CAIRO_LIBRARY)
+    message(STATUS "Color bars are drawn by Cairo")
+    pellucid_module(pellucid_cairo
+      SOURCES images/cairo_draw.cpp LIBRARIES "${PELLUCID_CAIRO_LIBRARY}")
+    target_include_directories(pellucid_cairo SYSTEM PRIVATE "${PELLUCID_CAIRO_INCLUDE_DIR}")
+  elseif(NOT PELLUCID_WITH_CAIRO STREQUAL "AUTO")
+    message(FATAL_ERROR "Cairo was not found; set PELLUCID_WITH_CAIRO=OFF to build without")
+  else()
+    message(STATUS "Cairo was not found: color bars are not drawn (Debian: libcairo2-dev)")
+  endif()
+endif()

@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: Apache-2.0
+pellucid_io_sources(
+  SOURCES
+    nifti.cpp
+    nifti_fields.cpp
+    nifti_header.cpp
+  LATER
+    mgh.cpp
+    write_nifti.cpp
+  LOOPS
+    nifti.cpp
+    write_nifti.cpp)

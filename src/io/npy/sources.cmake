@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: Apache-2.0
+pellucid_io_sources(
+  SOURCES
+    npy.cpp
+  LATER
+    npz.cpp
+  LOOPS
+    npy.cpp)

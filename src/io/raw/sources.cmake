@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: Apache-2.0
+pellucid_io_sources(
+  SOURCES
+    raw.cpp
+  LATER
+    write_raw.cpp
+  LOOPS
+    write_raw.cpp)

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: Apache-2.0
+pellucid_io_sources(
+  SOURCES
+    channel_source.cpp
+    color_layer.cpp
+    field_source.cpp
+    gaussian_text.cpp
+    label_table.cpp
+    mesh_source.cpp
+    scene_json.cpp
+    scene_json_change.cpp
+    scene_json_complete.cpp
+    scene_json_fields.cpp
+    scene_json_fit.cpp
+    scene_json_functions.cpp
+    scene_json_gaussians.cpp
+    scene_json_layers.cpp
+    scene_json_light.cpp
+    scene_json_load.cpp
+    scene_json_mesh.cpp
+    scene_json_values.cpp
+    scene_json_write.cpp
+    transfer_function_description.cpp)

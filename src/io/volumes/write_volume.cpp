@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/io/write_volume.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <string_view>
+
+#include "files/gzip_writer.h"
+#include "pellucid/io/atomic_file.h"
+#include "pellucid/scene/error.h"
+#include "volume_writers.h"
+
+namespace pellucid {
+
+namespace {
+
+struct Format {
+  std::string_view extension;
+  Losses (*write)(const WrittenVolume&, const Sink&);
+  bool compressed = false;
+};
+
+constexpr std::array formats{Format{".nrrd", write_nrrd}, Format{".nii", write_nifti},
+                             Format{".nii.gz", write_nifti, true}, Format{".vti", write_vti},
+                             Format{".raw", write_raw}};
+
+const Format* format_of(const std::filesystem::path& path) {
+  std::string name = path.filename().string();
+  std::ranges::transform(name, name.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  const auto format = std::ranges::find_if(
+      formats, [&](const Format& known) { return name.ends_with(known.extension); });
+  return format == formats.end() ? nullptr : &*format;
+}
+
+void check(const WrittenVolume& volume) {
+  if (volume.components.empty()) throw Error(volume.path + ": not written: there is no volume");
+  const Volume::Description& first = volume.description();
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (first.coordinates[a].empty()) continue;
+    throw Error(volume.path + ": not written: the values stand at positions of their own along " +
+                std::string(1, "xyz"[a]) +
+                ", which the format cannot hold; write tetrahedra, .vtu");
+  }
+  for (const Volume& component : volume.components) {
+    const Volume::Description& d = component.description();
+    if (component.data().index() == volume.data().index() && d.dimensions == first.dimensions &&
+        d.centering == first.centering) {
+      continue;
+    }
+    throw Error(volume.path +
+                ": not written: its components differ in type, dimensions or centering");
+  }
+}
+
+}  // namespace
+
+bool is_writable_volume(const std::filesystem::path& path) {
+  return format_of(path) != nullptr;
+}
+
+std::string writable_volume_extensions() {
+  std::string known;
+  for (const Format& format : formats) {
+    known += (known.empty() ? "" : " ") + std::string(format.extension);
+  }
+  return known;
+}
+
+std::vector<std::string> write_volume(std::span<const Volume> components,
+                                      const std::filesystem::path& path, const std::string& array) {
+  const WrittenVolume volume{components, array, path.string()};
+  const Format* const format = format_of(path);
+  if (format == nullptr) {
+    throw Error(path.string() + ": not written: a volume is written as one of " +
+                writable_volume_extensions());
+  }
+  check(volume);
+  AtomicFile file(path);
+  std::ofstream stream(file.temporary_path(), std::ios::binary);
+  const Sink to_file = [&](std::span<const std::byte> bytes) {
+    stream.write(reinterpret_cast<const char*>(bytes.data()),
+                 static_cast<std::streamsize>(bytes.size()));
+    if (!stream) throw Error(path.string() + ": cannot write: is the disk full?");
+  };
+  Losses losses;
+  if (format->compressed) {
+    GzipWriter gzip(to_file);
+    losses = format->write(volume, [&](std::span<const std::byte> bytes) { gzip.put(bytes); });
+    gzip.finish();
+  } else {
+    losses = format->write(volume, to_file);
+  }
+  stream.close();
+  if (!stream) throw Error(path.string() + ": cannot write: is the disk full?");
+  file.commit();
+  return losses;
+}
+
+void put_text(const std::string& text, const Sink& sink) {
+  sink(std::as_bytes(std::span(text)));
+}
+
+void put_interleaved(const WrittenVolume& volume, const Sink& sink) {
+  if (volume.count() == 1) {
+    put_one_by_one(volume, sink);
+    return;
+  }
+  std::visit(
+      [&](const auto& first) {
+        using Value = typename std::decay_t<decltype(first)>::value_type;
+        const std::size_t components = volume.components.size();
+        constexpr std::size_t values_at_once = std::size_t{1} << 16;
+        const std::size_t points_at_once = std::max<std::size_t>(values_at_once / components, 1);
+        std::vector<Value> part;
+        for (std::size_t begin = 0; begin < first.size(); begin += points_at_once) {
+          const std::size_t end = std::min(first.size(), begin + points_at_once);
+          part.resize((end - begin) * components);
+          for (std::size_t c = 0; c < components; ++c) {
+            const auto& values = std::get<DataArray<Value>>(volume.components[c].data());
+            for (std::size_t i = begin; i < end; ++i) {
+              part[(i - begin) * components + c] = values[i];
+            }
+          }
+          sink(std::as_bytes(std::span(part)));
+        }
+      },
+      volume.data());
+}
+
+void put_one_by_one(const WrittenVolume& volume, const Sink& sink) {
+  for (const Volume& component : volume.components) {
+    std::visit(
+        [&](const auto& values) { sink(std::as_bytes(std::span(values.data(), values.size()))); },
+        component.data());
+  }
+}
+
+std::string exact_text(double x) {
+  std::array<char, 32> digits{};
+  // The sum turns -0 into 0.
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), x + 0.0);
+  return {digits.data(), end.ptr};
+}
+
+std::string exact_text(const Vec3<double>& v, const std::string& separator) {
+  return exact_text(v.x) + separator + exact_text(v.y) + separator + exact_text(v.z);
+}
+
+}  // namespace pellucid

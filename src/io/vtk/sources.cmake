@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: Apache-2.0
+pellucid_io_sources(
+  LATER
+    legacy_vtk_cells.cpp
+    legacy_vtk_numbers.cpp
+    vtk_cells.cpp
+    vtk_collection.cpp
+    vtk_file_kind.cpp
+    vtk_files.cpp
+    vtk_image_pieces.cpp
+    vtk_js.cpp
+    vtk_module.cpp
+    vtk_volume.cpp
+    vtk_volume_answer.cpp
+    vtk_volume_open.cpp
+    vtu_file.cpp
+    write_vti.cpp
+  LOOPS
+    vtk_image_pieces.cpp
+    vtk_volume_open.cpp
+    vtu_file.cpp
+    write_vti.cpp)

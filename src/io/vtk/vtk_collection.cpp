@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "vtk_collection.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "pellucid/io/atomic_file.h"
+#include "pellucid/scene/error.h"
+#include "text/xml_scanner.h"
+#include "vtk_file_kind.h"
+#include "vtk_volume.h"
+
+namespace pellucid {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_adaptive(const std::string& kind) {
+  constexpr std::array<std::string_view, 4> adaptive{"vtkHierarchicalBoxDataSet",
+                                                     "vtkOverlappingAMR", "vtkNonOverlappingAMR",
+                                                     "vtkUniformGridAMR"};
+  return std::ranges::find(adaptive, kind) != adaptive.end();
+}
+
+/// Returns the file's kind where it lists others.
+std::optional<std::string> collection_kind(const fs::path& path) {
+  const std::optional<VtkFileKind> kind = vtk_file_kind(path);
+  if (!kind || !kind->xml) return std::nullopt;
+  if (is_adaptive(kind->data) || kind->data == "vtkMultiBlockDataSet" ||
+      kind->data == "Collection") {
+    return kind->data;
+  }
+  return std::nullopt;
+}
+
+/// Returns the files that the elements DataSet name, as they are named.
+std::vector<std::string> names_in(const fs::path& path) {
+  const std::string name = path.string();
+  constexpr std::size_t largest = std::size_t{1} << 26;
+  const std::string text = read_text_file(path, largest);
+  XmlScanner scanner(text, name);
+  std::vector<std::string> names;
+  while (const std::optional<XmlTag> tag = scanner.next()) {
+    // What may be in the file behind is no list.
+    if (tag->name == "AppendedData") break;
+    const auto file = tag->attributes.find("file");
+    if (tag->name != "DataSet" || tag->closes || file == tag->attributes.end()) continue;
+    names.emplace_back(file->second);
+  }
+  return names;
+}
+
+bool is_image(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return false;
+  const std::optional<VtkFileKind> kind = vtk_file_kind(path);
+  return kind && kind->is_volume();
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  std::string list;
+  constexpr std::size_t most = 5;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) {
+    list += (i == 0 ? "" : ", ") + names[i].substr(0, 100);
+  }
+  return list + (names.size() > most ? ", …" : "");
+}
+
+fs::path only_image(const fs::path& path) {
+  const std::string kind = collection_kind(path).value_or("");
+  std::vector<std::string> names = names_in(path);
+  if (is_adaptive(kind)) {
+    throw Error(path.string() + ": is adaptive (" + kind + "), voxels of several sizes, which is " +
+                "not read; resample it to an image" +
+                (names.empty() ? "" : ", or give one of its files: " + list_of(names)));
+  }
+  if (names.size() != 1) {
+    throw Error(path.string() + ": lists " + std::to_string(names.size()) +
+                " files, images among them, of which one is read at a time; give one of them: " +
+                list_of(names));
+  }
+  return path.parent_path() / names.front();
+}
+
+}  // namespace
+
+bool is_image_collection(const fs::path& path) {
+  const std::optional<std::string> kind = collection_kind(path);
+  if (!kind) return false;
+  if (is_adaptive(*kind)) return true;
+  try {
+    return std::ranges::any_of(names_in(path), [&](const std::string& name) {
+      return is_image(path.parent_path() / name);
+    });
+  } catch (const Error&) {
+    return false;  // whoever reads it as a mesh says what is wrong
+  }
+}
+
+VolumeFile open_image_collection(const fs::path& path, const ReadOptions& options) {
+  return open_vtk_volume(only_image(path), options);
+}
+
+std::vector<VolumeArray> list_collection_arrays(const fs::path& path) {
+  return list_vtk_arrays(only_image(path));
+}
+
+}  // namespace pellucid
