@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the tables of color maps: src/scene/color_map_table.cpp and tests/scene/color_maps.csv.
+"""Writes the tables of color maps: src/scene/looks/color_map_table.cpp and
+tests/scene/color_maps.csv.
 
     tools/color_maps.py --paraview ColorMaps.json --batlow batlow.cpt
 
@@ -157,7 +158,7 @@ def write_table(maps):
     text += ",\n".join(listed) + "}};\n\n}  // namespace\n\n"
     text += "std::span<const NamedColorMap> color_map_table() noexcept {\n  return maps;\n}\n\n"
     text += "}  // namespace pellucid\n"
-    (ROOT / "src/scene/color_map_table.cpp").write_text(text)
+    (ROOT / "src/scene/looks/color_map_table.cpp").write_text(text)
 
 
 def write_checks(maps):

@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "distinct_colors.h"
+#include "blocks/value_classes.h"
+#include "looks/distinct_colors.h"
+#include "looks/value_sample.h"
 #include "mean_chord.h"
 #include "readable_numbers.h"
-#include "value_classes.h"
-#include "value_sample.h"
 
 namespace pellucid {
 namespace {

@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <variant>
 
+#include "blocks/voxel_edges.h"
 #include "message.h"
 #include "moved_source.h"
 #include "pellucid/scene/error.h"
-#include "voxel_edges.h"
 
 namespace pellucid {
 namespace {

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "expect_error.h"
-#include "src/scene/mixture_cells.h"
-#include "src/scene/mixture_step.h"
+#include "src/scene/looks/mixture_cells.h"
+#include "src/scene/looks/mixture_step.h"
 
 namespace pellucid::test_mixture_fit {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "src/scene/spatial_order.h"
+#include "src/scene/tetrahedra/spatial_order.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "in_threads.h"
-#include "src/scene/cut_order.h"
+#include "src/scene/tetrahedra/cut_order.h"
 
 namespace pellucid::test_spatial_order {
 namespace {

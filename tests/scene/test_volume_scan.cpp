@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "src/scene/volume_scan.h"
+#include "src/scene/blocks/volume_scan.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "axis_differences.h"
+#include "blocks/axis_differences.h"
 #include "derived_volume.h"
 
 namespace pellucid {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <variant>
 
-#include "value_sample.h"
+#include "looks/value_sample.h"
 
 namespace pellucid {
 namespace {

@@ -10,9 +10,9 @@
 #include <span>
 #include <variant>
 
+#include "blocks/voxel_edges.h"
+#include "looks/value_sample.h"
 #include "pellucid/scene/volume.h"
-#include "value_sample.h"
-#include "voxel_edges.h"
 
 namespace pellucid {
 namespace {

@@ -11,11 +11,11 @@
 #include <string>
 #include <utility>
 
+#include "blocks/volume_scan.h"
 #include "message.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/volume.h"
 #include "volume_check.h"
-#include "volume_scan.h"
 
 namespace pellucid {
 

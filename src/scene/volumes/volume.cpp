@@ -10,12 +10,12 @@
 #include <span>
 #include <utility>
 
+#include "blocks/volume_blocks.h"
+#include "blocks/volume_scan.h"
 #include "message.h"
 #include "pellucid/scene/error.h"
-#include "volume_blocks.h"
 #include "volume_check.h"
 #include "volume_noise.h"
-#include "volume_scan.h"
 
 namespace pellucid {
 namespace {

@@ -10,10 +10,10 @@
 #include <type_traits>
 #include <utility>
 
+#include "blocks/volume_scan.h"
 #include "message.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/transfer/gaussian.h"
-#include "volume_scan.h"
 
 namespace pellucid {
 namespace {

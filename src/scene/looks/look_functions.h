@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "blocks/value_classes.h"
 #include "pellucid/scene/look.h"
-#include "value_classes.h"
 
 namespace pellucid {
 

@@ -6,9 +6,9 @@
 #include <set>
 #include <utility>
 
+#include "functions/point_check.h"
 #include "message.h"
 #include "pellucid/scene/error.h"
-#include "point_check.h"
 
 namespace pellucid {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
+#include "looks/value_sample.h"
 #include "message.h"
 #include "pellucid/scene/error.h"
-#include "value_sample.h"
 
 namespace pellucid {
 namespace {
