@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "grid_field.h"
-#include "mesh_field.h"
+#include "grid/grid_field.h"
+#include "mesh/mesh_field.h"
 
 namespace pellucid::reference {
 

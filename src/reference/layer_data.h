@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "clip_intervals.h"
-#include "field.h"
-#include "grid.h"
-#include "mixture.h"
+#include "grid/field.h"
+#include "grid/grid.h"
+#include "mixture/mixture.h"
 #include "pellucid/scene/layer.h"
 
 namespace pellucid::reference {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "mixture_gatherer.h"
+#include "mixture/mixture_gatherer.h"
 
 namespace pellucid::reference {
 namespace {

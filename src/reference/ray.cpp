@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "piece.h"
+#include "grid/piece.h"
 
 namespace pellucid::reference {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "field.h"
+#include "grid/field.h"
 #include "pellucid/reference/render.h"
 #include "table.h"
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <vector>
 
-#include "grid_field.h"
+#include "grid/grid_field.h"
 #include "layered_ray.h"
-#include "lit_ray.h"
-#include "mesh_field.h"
-#include "multivariate_ray.h"
+#include "light/lit_ray.h"
+#include "mesh/mesh_field.h"
+#include "mixture/multivariate_ray.h"
 #include "pellucid/scene/error.h"
 #include "ray.h"
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "field.h"
+#include "grid/field.h"
 #include "layer_data.h"
-#include "lit_layer.h"
-#include "mixture.h"
+#include "light/lit_layer.h"
+#include "mixture/mixture.h"
 #include "pellucid/reference/render.h"
 #include "projection.h"
 #include "table.h"

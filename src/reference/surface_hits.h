@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "lit_layer.h"
+#include "light/lit_layer.h"
 
 namespace pellucid::reference {
 

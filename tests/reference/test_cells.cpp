@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "src/reference/piece.h"
+#include "src/reference/grid/piece.h"
 #include "tests/support/accuracy.h"
 #include "tests/support/table.h"
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "pellucid/traverse/mesh_spans.h"
-#include "src/reference/mesh.h"
+#include "src/reference/mesh/mesh.h"
 #include "tests/scenes/meshes.h"
 
 /// The walk through a mesh against the reference, which meets each tetrahedron by itself: every one

@@ -8,7 +8,7 @@
 
 #include "pellucid/reference/render.h"
 #include "pellucid/scene/error.h"
-#include "src/reference/mesh.h"
+#include "src/reference/mesh/mesh.h"
 #include "tests/scenes/makers.h"
 #include "tests/scenes/meshes.h"
 #include "tests/support/one_layer.h"

@@ -11,11 +11,11 @@ namespace pellucid {
 /// Renders the same scene by quadrature in double to 1e-12, cell by cell. Slow. It uses adaptive
 /// Gauß-Kronrod (Boost.Math); with a multivariate transfer function it uses Gauß-Legendre with 20
 /// nodes on parts that are halved until no Gaussian can be missed between them
-/// (src/reference/multivariate_ray.cpp).
+/// (src/reference/mixture/multivariate_ray.cpp).
 ///
 /// A scene with shading, gradient opacity, isosurfaces or slices is integrated to 1e-12 per part of
 /// a ray: parts end where the light has a kink, and are halved until the halves agree with the
-/// whole (src/reference/lit_gatherer.h).
+/// whole (src/reference/light/lit_gatherer.h).
 ///
 /// It shares no kernel with the fast path: ray-plane sorting, search of tetrahedra (each is
 /// intersected on its own), interpolation, gradients, transfer-function look-up, crossings, light

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "mixture_part.h"
-#include "piece.h"
+#include "grid/piece.h"
+#include "mixture/mixture_part.h"
 #include "ray_lights.h"
 
 namespace pellucid::reference {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "grid/piece.h"
 #include "lit_part.h"
-#include "piece.h"
 #include "surface_hits.h"
 
 namespace pellucid::reference {

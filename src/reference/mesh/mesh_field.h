@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "derived_channels.h"
-#include "field.h"
+#include "grid/derived_channels.h"
+#include "grid/field.h"
 #include "mesh.h"
 #include "mesh_gradient.h"
 #include "pellucid/scene/mesh_channels.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "derived_channels.h"
+#include "grid/derived_channels.h"
 #include "vectors.h"
 
 namespace pellucid::reference {

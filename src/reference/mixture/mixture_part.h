@@ -6,8 +6,8 @@
 
 #include "collocation.h"
 #include "gaussian_term.h"
+#include "grid/piece.h"
 #include "mixture.h"
-#include "piece.h"
 
 namespace pellucid::reference {
 

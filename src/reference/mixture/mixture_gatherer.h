@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "grid/piece.h"
 #include "mixture_part.h"
-#include "piece.h"
 
 namespace pellucid::reference {
 
