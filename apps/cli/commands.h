@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-#include "command_line.h"
+#include "arguments/command_line.h"
 
 namespace pellucid::cli {
 

@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "arguments/output.h"
+#include "arguments/overwriting.h"
+#include "arguments/parse.h"
 #include "commands.h"
-#include "output.h"
-#include "overwriting.h"
-#include "parse.h"
 #include "pellucid/base/version.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/scene/image_difference.h"

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "arguments/input.h"
+#include "arguments/output.h"
+#include "arguments/overwriting.h"
+#include "arguments/parse.h"
 #include "commands.h"
-#include "input.h"
-#include "output.h"
-#include "overwriting.h"
-#include "parse.h"
 #include "pellucid/base/version.h"
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/atomic_file.h"
@@ -22,7 +22,7 @@
 #include "pellucid/io/write_mesh.h"
 #include "pellucid/io/write_volume.h"
 #include "pellucid/scene/cut_cells.h"
-#include "progress.h"
+#include "render/progress.h"
 
 namespace pellucid::cli {
 

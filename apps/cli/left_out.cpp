@@ -6,7 +6,7 @@
 
 #include "commands.h"
 #include "pellucid/reference/render.h"
-#include "render.h"
+#include "render/render.h"
 #include "view/suggestions.h"
 
 namespace pellucid {

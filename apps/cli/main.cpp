@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "arguments/output.h"
+#include "arguments/parse.h"
 #include "commands.h"
-#include "output.h"
-#include "parse.h"
 #include "pellucid/base/version.h"
-#include "progress.h"
-#include "render.h"
+#include "render/progress.h"
+#include "render/render.h"
 
 namespace pellucid::cli {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "arguments/output.h"
 #include "commands.h"
-#include "output.h"
 #include "pellucid/scene/color_map.h"
 
 namespace pellucid::cli {

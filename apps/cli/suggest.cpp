@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "channel_arguments.h"
+#include "arguments/channel_arguments.h"
+#include "arguments/output.h"
+#include "arguments/parse.h"
+#include "arguments/scene_text.h"
 #include "commands.h"
-#include "output.h"
-#include "parse.h"
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
-#include "scene_text.h"
 
 namespace pellucid::cli {
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "arguments/import_arguments.h"
+#include "arguments/output.h"
+#include "arguments/overwriting.h"
+#include "arguments/parse.h"
 #include "commands.h"
-#include "import_arguments.h"
-#include "output.h"
-#include "overwriting.h"
-#include "parse.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/export_transfer_function.h"
 #include "pellucid/io/image_files.h"

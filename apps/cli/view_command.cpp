@@ -13,12 +13,12 @@
 #include <system_error>
 #include <utility>
 
+#include "arguments/mesh_input.h"
+#include "arguments/output.h"
+#include "arguments/parse.h"
 #include "commands.h"
-#include "mesh_input.h"
-#include "output.h"
-#include "parse.h"
-#include "progress.h"
-#include "render.h"
+#include "render/progress.h"
+#include "render/render.h"
 #include "view/viewer.h"
 
 namespace pellucid::cli {

@@ -24,7 +24,7 @@ foreach(path IN LISTS FILES)
     "${bytes}, ${size})},\n")
 endforeach()
 file(WRITE "${OUTPUT}"
-  "#include \"page_files.h\"\n\nnamespace pellucid::view {\n\nnamespace {\n\n"
+  "#include \"server/page_files.h\"\n\nnamespace pellucid::view {\n\nnamespace {\n\n"
   "constexpr PageFile files[] = {\n${rows}};\n\n}  // namespace\n\n"
   "std::span<const PageFile> page_files() noexcept {\n  return files;\n}\n\n"
   "}  // namespace pellucid::view\n")

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "cli/error_map.h"
-#include "page_messages.h"
+#include "cli/render/error_map.h"
 #include "pellucid/io/display_bytes.h"
 #include "pellucid/io/scene_json.h"
+#include "server/page_messages.h"
 
 namespace pellucid::view {
 

@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "overlay.h"
-#include "page_server.h"
 #include "pellucid/cpu/moving_pictures.h"
 #include "pellucid/cpu/renderer.h"
+#include "server/page_server.h"
 
 namespace pellucid::view {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "cli/parse.h"
+#include "cli/arguments/parse.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid::view {

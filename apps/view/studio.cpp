@@ -11,12 +11,12 @@
 
 #include "camera_moves.h"
 #include "histograms.h"
-#include "page_messages.h"
 #include "pellucid/cpu/framed_camera.h"
 #include "pellucid/cpu/threads.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/view_camera.h"
 #include "probe.h"
+#include "server/page_messages.h"
 #include "thumbnail.h"
 
 namespace pellucid::view {

@@ -16,10 +16,10 @@
 #include "command.h"
 #include "frame_maker.h"
 #include "gaussian_fit.h"
-#include "page_server.h"
-#include "saved_files.h"
 #include "scene_facts.h"
 #include "scene_state.h"
+#include "server/page_server.h"
+#include "server/saved_files.h"
 
 namespace pellucid::view {
 

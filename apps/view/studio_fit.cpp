@@ -2,8 +2,8 @@
 #include <exception>
 #include <utility>
 
-#include "page_messages.h"
 #include "pellucid/scene/error.h"
+#include "server/page_messages.h"
 #include "studio.h"
 
 namespace pellucid::view {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thumbnail.h"
 
-#include "page_messages.h"
 #include "pellucid/io/display_bytes.h"
+#include "server/page_messages.h"
 
 namespace pellucid::view {
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "command.h"
-#include "page_server.h"
 #include "pellucid/cpu/renderer.h"
 #include "scene_state.h"
+#include "server/page_server.h"
 
 namespace pellucid::view {
 

@@ -8,13 +8,13 @@
 #include <new>
 #include <utility>
 
-#include "opener.h"
-#include "page_messages.h"
-#include "page_server.h"
 #include "pellucid/cpu/threads.h"
 #include "pellucid/scene/error.h"
+#include "server/opener.h"
+#include "server/page_messages.h"
+#include "server/page_server.h"
+#include "server/uploads.h"
 #include "studio.h"
-#include "uploads.h"
 
 namespace pellucid::view {
 

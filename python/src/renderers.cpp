@@ -12,7 +12,7 @@
 #include "images.h"
 #include "pellucid/cpu/renderer.h"
 #include "pellucid/reference/render.h"
-#include "relative_tolerance.h"
+#include "render/relative_tolerance.h"
 #include "scenes.h"
 #include "waiting.h"
 

@@ -29,7 +29,7 @@ PLANTS = [
     ("src/io/planted.h", '  #  include "pellucid/cpu/render.h"', "siblings"),
     ("src/reference/planted.h", '#include "pellucid/segment/linear.h"', "never sees segment"),
     ("src/scene/planted.h", '#include "pellucid/reference/render.h"', "to the right of scene"),
-    ("src/scene/planted.h", '#include "../../apps/cli/csv.h"', "neither"),
+    ("src/scene/planted.h", '#include "../../apps/cli/charts/csv.h"', "neither"),
     ("src/cpu/layers/planted.h", '#include "csv.h"', "neither"),
     ("src/cpu/layers/planted.h", '#include "../ray_tracer.h"', "neither"),
     ("src/scene/planted.h", '#include "pellucid/scene/nowhere.h"', "does not exist"),

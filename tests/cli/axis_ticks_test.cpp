@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "axis_ticks.h"
+#include "charts/axis_ticks.h"
 
 #include <gtest/gtest.h>
 

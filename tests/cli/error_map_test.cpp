@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "error_map.h"
+#include "render/error_map.h"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "csv.h"
-#include "parse.h"
+#include "arguments/parse.h"
+#include "charts/csv.h"
 #include "pellucid/scene/error.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "histogram_picture.h"
+#include "charts/histogram_picture.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 #include <map>
 
-#include "canvas.h"
-#include "colors.h"
+#include "charts/canvas.h"
+#include "charts/colors.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "parse.h"
+#include "arguments/parse.h"
 
 #include <gtest/gtest.h>
 

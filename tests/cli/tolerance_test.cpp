@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tolerance.h"
+#include "render/tolerance.h"
 
 #include <gtest/gtest.h>
 

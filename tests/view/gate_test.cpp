@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "view/gate.h"
+#include "view/server/gate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "view/uploads.h"
+#include "view/server/uploads.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "pellucid/io/temporary_folder.h"
 #include "pellucid/scene/error.h"
-#include "view/folders.h"
+#include "view/server/folders.h"
 
 namespace pellucid::view::uploads_test {
 namespace {

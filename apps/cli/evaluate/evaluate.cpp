@@ -9,10 +9,10 @@
 #include <string>
 #include <utility>
 
+#include "arguments/output.h"
+#include "arguments/overwriting.h"
+#include "arguments/parse.h"
 #include "commands.h"
-#include "output.h"
-#include "overwriting.h"
-#include "parse.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "output.h"
+#include "arguments/output.h"
 #include "pellucid/io/pyramid.h"
 
 namespace pellucid::cli {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "parse.h"
+#include "arguments/parse.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/color_data.h"
 #include "pellucid/io/import_transfer_function.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "colors.h"
+#include "charts/colors.h"
 
 namespace pellucid::cli {
 

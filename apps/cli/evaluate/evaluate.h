@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "csv.h"
+#include "charts/csv.h"
 #include "pellucid/scene/transfer_function.h"
 
 namespace pellucid::cli {

@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "color_arguments.h"
-#include "import_arguments.h"
-#include "input.h"
-#include "light_arguments.h"
-#include "mesh_input.h"
-#include "output.h"
+#include "arguments/color_arguments.h"
+#include "arguments/import_arguments.h"
+#include "arguments/input.h"
+#include "arguments/light_arguments.h"
+#include "arguments/mesh_input.h"
+#include "arguments/output.h"
 #include "pellucid/cpu/render.h"
 #include "pellucid/io/scene_json.h"
 

@@ -10,10 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "arguments/labels.h"
+#include "arguments/parse.h"
+#include "arguments/scene_text.h"
 #include "commands.h"
 #include "error_map.h"
-#include "labels.h"
-#include "parse.h"
 #include "pellucid/cpu/framed_camera.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
@@ -22,7 +23,6 @@
 #include "pellucid/scene/picture_advice.h"
 #include "progress.h"
 #include "relative_tolerance.h"
-#include "scene_text.h"
 #include "tolerance.h"
 
 namespace pellucid::cli {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "command.h"
 #include "pellucid/io/color_bar.h"
 #include "pellucid/io/scene_json.h"
 #include "pellucid/scene/image.h"
+#include "view/command.h"
 
 namespace pellucid::view {
 

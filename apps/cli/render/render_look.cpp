@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "parse.h"
+#include "arguments/parse.h"
 #include "pellucid/scene/look.h"
 #include "render.h"
 

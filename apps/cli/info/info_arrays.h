@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "output.h"
+#include "arguments/output.h"
 #include "pellucid/io/read_volume.h"
 
 namespace pellucid::cli {

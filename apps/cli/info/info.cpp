@@ -10,16 +10,16 @@
 #include <utility>
 #include <vector>
 
+#include "arguments/input.h"
+#include "arguments/labels.h"
+#include "arguments/mesh_input.h"
+#include "arguments/output.h"
 #include "commands.h"
 #include "info_arrays.h"
 #include "info_levels.h"
 #include "info_mesh.h"
 #include "info_series.h"
-#include "input.h"
-#include "labels.h"
-#include "mesh_input.h"
 #include "orientation.h"
-#include "output.h"
 #include "pellucid/base/version.h"
 #include "pellucid/io/dicom_series.h"
 #include "pellucid/scene/labels.h"

@@ -8,7 +8,7 @@
 #include <system_error>
 #include <vector>
 
-#include "cli/parse.h"
+#include "cli/arguments/parse.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/io/read_volume.h"
 #include "pellucid/scene/error.h"

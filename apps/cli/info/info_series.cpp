@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "output.h"
+#include "arguments/output.h"
 #include "pellucid/base/version.h"
 #include "pellucid/io/dicom_series.h"
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "channel_arguments.h"
+#include "arguments/channel_arguments.h"
+#include "arguments/output.h"
+#include "arguments/parse.h"
 #include "commands.h"
 #include "histogram_picture.h"
-#include "output.h"
-#include "parse.h"
 #include "pellucid/base/version.h"
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/image_files.h"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "command.h"
+#include "view/command.h"
 
 namespace pellucid::view {
 

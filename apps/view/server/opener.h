@@ -12,7 +12,7 @@
 
 #include "page_server.h"
 #include "pellucid/io/temporary_folder.h"
-#include "viewer.h"
+#include "view/viewer.h"
 
 namespace pellucid::view {
 

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "command.h"
 #include "page_server.h"
+#include "view/command.h"
 
 namespace pellucid::view {
 

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "parse.h"
+#include "arguments/parse.h"
 #include "pellucid/cluster/communicator.h"
 #include "pellucid/cluster/load.h"
 #include "pellucid/cluster/render.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "parse.h"
+#include "arguments/parse.h"
 #include "pellucid/io/color_bar.h"
 #include "render.h"
 

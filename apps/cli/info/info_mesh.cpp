@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "output.h"
+#include "arguments/output.h"
 #include "pellucid/base/version.h"
 #include "pellucid/cpu/threads.h"
 

@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
-#include "overwriting.h"
-#include "parse.h"
+#include "arguments/overwriting.h"
+#include "arguments/parse.h"
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
