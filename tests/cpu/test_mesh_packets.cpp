@@ -14,7 +14,7 @@
 
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/defaults.h"
-#include "tests/scene/lattice_mesh.h"
+#include "tests/scene/tetrahedra/lattice_mesh.h"
 #include "tests/support/instruction_sets.h"
 #include "tests/support/one_layer.h"
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "dicom_files.h"
 #include "noting_folder.h"
-#include "zarr_files.h"
+#include "tests/io/arrays/zarr_files.h"
+#include "tests/io/dicom/dicom_files.h"
 
 namespace pellucid::test_apple_double {
 namespace {

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "pellucid/scene/error.h"
-#include "sanitized.h"
 #include "src/io/process/contained.h"
+#include "tests/io/mutants/sanitized.h"
 
 namespace pellucid::test_contained {
 namespace {

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "mesh_files.h"
 #include "pellucid/io/read_volume.h"
+#include "tests/io/vtk/mesh_files.h"
 #include "volume_files.h"
 #ifdef PELLUCID_HAVE_HDF5
-#include "vtk_hdf_files.h"
+#include "tests/io/arrays/vtk_hdf_files.h"
 #endif
 #ifdef PELLUCID_HAVE_NETCDF
 #include <netcdf.h>

@@ -9,9 +9,9 @@
 #include <limits>
 #include <string>
 
-#include "sanitized.h"
 #include "scratch_folder.h"
 #include "src/io/volumes/components.h"
+#include "tests/io/mutants/sanitized.h"
 
 namespace pellucid::test_memory_limit {
 namespace {

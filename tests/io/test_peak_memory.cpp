@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "pellucid/io/read_volume.h"
-#include "sanitized.h"
+#include "tests/io/mutants/sanitized.h"
 #include "volume_files.h"
 
 // How much memory reading a volume takes at most: the data once, in its own type.

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "image_files.h"
-#include "net_cdf_files.h"
 #include "pellucid/io/read_volume.h"
-#include "zarr_files.h"
+#include "tests/io/arrays/net_cdf_files.h"
+#include "tests/io/arrays/zarr_files.h"
 
 namespace pellucid::test_time_steps {
 namespace {

@@ -19,7 +19,7 @@
 #include "pellucid/render/camera.h"
 #include "pellucid/scene/defaults.h"
 #include "tests/packet/random_frames.h"
-#include "tests/scene/lattice_mesh.h"
+#include "tests/scene/tetrahedra/lattice_mesh.h"
 #include "tests/support/instruction_sets.h"
 #include "tests/support/one_layer.h"
 

@@ -15,7 +15,7 @@
 #include "pellucid/cpu/render.h"
 #include "tests/packet/against_one_by_one.h"
 #include "tests/packet/random_frames.h"
-#include "tests/scene/lattice_mesh.h"
+#include "tests/scene/tetrahedra/lattice_mesh.h"
 #include "tests/support/one_layer.h"
 
 namespace pellucid {
