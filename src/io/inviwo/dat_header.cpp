@@ -24,7 +24,7 @@
 #include "files/input_file.h"
 #include "inviwo_values.h"
 #include "pellucid/scene/error.h"
-#include "text/json_document.h"
+#include "text/printable.h"
 #include "text/text.h"
 
 namespace pellucid {
@@ -88,7 +88,7 @@ std::optional<std::array<double, count>> numbers(const Fields& fields, const std
   for (double& number : list) are_numbers = are_numbers && words >> number && std::isfinite(number);
   if (std::string more; are_numbers && !(words >> more)) return list;
   constexpr const char* counts[] = {"no", "no", "no two", "no three", "no four"};
-  throw Error(name + ": \"" + fields.at(key).key + ": " + scene_json::printable(text) + "\" are " +
+  throw Error(name + ": \"" + fields.at(key).key + ": " + printable(text) + "\" are " +
               counts[count] + " numbers; mend the header");
 }
 
@@ -122,7 +122,7 @@ std::optional<std::uint64_t> whole_number(const Fields& fields, const std::strin
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, number);
   if (error == std::errc{} && stop == end && number >= least) return number;
-  throw Error(name + ": \"" + fields.at(key).key + ": " + scene_json::printable(text) +
+  throw Error(name + ": \"" + fields.at(key).key + ": " + printable(text) +
               "\" is no whole number from " + std::to_string(least) + "; mend the header");
 }
 
@@ -189,7 +189,7 @@ bool is_big_endian(const Fields& fields, const std::string& name) {
   const std::string text = value_of(fields, "byteorder"), order = in_small_letters(text);
   if (order == "bigendian" || order == "big") return true;
   if (order.empty() || order == "littleendian" || order == "little") return false;
-  throw Error(name + ": \"ByteOrder: " + scene_json::printable(text) +
+  throw Error(name + ": \"ByteOrder: " + printable(text) +
               "\" is neither LittleEndian nor BigEndian; mend the header");
 }
 
@@ -206,7 +206,7 @@ VolumeFile open_dat(const fs::path& path, const ReadOptions& options) {
   const Fields fields = read_fields(path, name);
   if (fields.contains("datfile")) {
     throw Error(name + ": lists headers of steps (DatFile); give one of them, such as " +
-                scene_json::printable(value_of(fields, "datfile")));
+                printable(value_of(fields, "datfile")));
   }
   InviwoHeader header;
   header.values = path.parent_path() / file_of(fields);

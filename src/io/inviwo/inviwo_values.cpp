@@ -12,7 +12,7 @@
 #include "files/memory_limit.h"
 #include "pellucid/scene/error.h"
 #include "text/header_keys.h"
-#include "text/json_document.h"
+#include "text/printable.h"
 #include "text/text.h"
 
 namespace pellucid {
@@ -115,7 +115,7 @@ bool changes_values(const InviwoHeader& header, const std::string& name) {
 void tell(const InviwoHeader& header, const std::string& name, const Note& note) {
   if (!note) return;
   if (!header.unit.empty()) {
-    note(name + ": its values are in " + scene_json::printable(header.unit) + " (Unit)");
+    note(name + ": its values are in " + printable(header.unit) + " (Unit)");
   }
   if (header.value_range && !header.data_range) {
     note(name +

@@ -25,7 +25,7 @@
 #include "inviwo_values.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/scene/error.h"
-#include "text/json_document.h"
+#include "text/printable.h"
 #include "text/text.h"
 #include "text/xml_scanner.h"
 #include "transfer_functions/foreign_text.h"
@@ -89,8 +89,8 @@ class Reader {
   std::string_view attribute(const XmlTag& tag, std::string_view key) const {
     const auto found = tag.attributes.find(key);
     if (found != tag.attributes.end()) return found->second;
-    throw Error(scanner_.where(tag) + ": <" + scene_json::printable(tag.name.substr(0, 40)) +
-                "> has no " + std::string(key));
+    throw Error(scanner_.where(tag) + ": <" + printable(tag.name.substr(0, 40)) + "> has no " +
+                std::string(key));
   }
   double number(const XmlTag& tag, std::string_view key) const {
     return foreign::number_of(attribute(tag, key), scanner_.where(tag));

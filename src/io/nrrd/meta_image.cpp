@@ -20,7 +20,7 @@
 #include "itk_header.h"
 #include "pellucid/scene/error.h"
 #include "text/header_keys.h"
-#include "text/json_document.h"
+#include "text/printable.h"
 #include "text/text.h"
 #include "volumes/components.h"
 #include "volumes/medical_volumes.h"
@@ -249,8 +249,8 @@ void check_numbers(const std::vector<Field>& fields, const std::string& name) {
     if (key == std::end(keys)) continue;
     const bool are_good = are_numbers(field.value, key->are_whole);
     if (are_good && numbers_of(field.value).size() <= key->most) continue;
-    throw Error(name + ": the header says \"" + field.key + " = " +
-                scene_json::printable(field.value) + "\", where " +
+    throw Error(name + ": the header says \"" + field.key + " = " + printable(field.value) +
+                "\", where " +
                 (are_good ? std::to_string(key->most) + " numbers are meant"
                           : std::string(key->are_whole ? "whole" : "finite") +
                                 " numbers are meant, with a point before decimals") +

@@ -9,13 +9,11 @@
 #include <vector>
 
 #include "pellucid/scene/error.h"
-#include "text/json_document.h"
+#include "text/printable.h"
 #include "text/readable_number.h"
 #include "text/text.h"
 
 namespace pellucid::nrrd {
-
-using scene_json::printable;
 
 namespace {
 

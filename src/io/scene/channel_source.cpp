@@ -12,13 +12,12 @@
 #include "pellucid/scene/derived_channels.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/transfer/gaussian.h"
-#include "text/json_document.h"
+#include "text/printable.h"
 
 namespace pellucid {
 namespace {
 
 using Kind = DerivedSource::Kind;
-using scene_json::printable;
 
 constexpr std::array kinds{Kind::gradient_magnitude, Kind::second_derivative, Kind::smoothed};
 

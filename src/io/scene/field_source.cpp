@@ -6,7 +6,7 @@
 
 #include "pellucid/scene/builtin_fields.h"
 #include "pellucid/scene/error.h"
-#include "text/json_document.h"
+#include "text/printable.h"
 
 namespace pellucid {
 
@@ -26,7 +26,7 @@ FieldSource parse_field_source(std::string_view text) {
     const auto result = std::from_chars(number.data(), end, source.points);
     if (result.ec != std::errc() || result.ptr != end || source.points < 2 ||
         source.points > 2048) {
-      throw Error("field " + scene_json::printable(text) + ": \"" + scene_json::printable(number) +
+      throw Error("field " + printable(text) + ": \"" + printable(number) +
                   "\" points per axis, but must be an integer from 2 to 2048");
     }
   }
@@ -34,8 +34,8 @@ FieldSource parse_field_source(std::string_view text) {
   if (std::find(names.begin(), names.end(), name) == names.end()) {
     std::string known;
     for (const std::string_view n : names) known += (known.empty() ? "" : ", ") + std::string(n);
-    throw Error("field " + scene_json::printable(text) + ": no built-in field of that name" +
-                scene_json::did_you_mean(name, names) + "; known: " + known);
+    throw Error("field " + printable(text) + ": no built-in field of that name" +
+                did_you_mean(name, names) + "; known: " + known);
   }
   source.builtin = name;
   return source;

@@ -11,12 +11,11 @@
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/srgb.h"
 #include "text/json_document.h"
+#include "text/printable.h"
 #include "text/text.h"
 
 namespace pellucid {
 namespace {
-
-using scene_json::printable;
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;

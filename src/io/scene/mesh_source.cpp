@@ -6,13 +6,11 @@
 
 #include "pellucid/io/channel_source.h"
 #include "pellucid/scene/error.h"
-#include "text/json_document.h"
+#include "text/printable.h"
 
 namespace pellucid {
 
 namespace {
-
-using scene_json::printable;
 
 /// The C of "ARRAY:C", which is taken off.
 std::optional<int> take_component(std::string_view& text) {

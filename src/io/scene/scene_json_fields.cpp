@@ -8,6 +8,7 @@
 #include "pellucid/scene/builtin_fields.h"
 #include "pellucid/scene/error.h"
 #include "scene_json_parts.h"
+#include "text/printable.h"
 
 namespace pellucid::scene_json {
 namespace {
@@ -54,7 +55,7 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
   if (has_volume_header(path)) {
     for (const char* key : {"dimensions", "type", "components", "byte_order", "skip_bytes"}) {
       if (field.has(key)) {
-        field.fail_at(key, "makes no sense for " + scene_json::printable(path) +
+        field.fail_at(key, "makes no sense for " + printable(path) +
                                ", which has a header; remove it (it is for headerless .raw)");
       }
     }

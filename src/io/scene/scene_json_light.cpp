@@ -7,6 +7,7 @@
 
 #include "pellucid/scene/error.h"
 #include "scene_json_parts.h"
+#include "text/printable.h"
 
 namespace pellucid::scene_json {
 namespace {

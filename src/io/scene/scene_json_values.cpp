@@ -4,6 +4,7 @@
 
 #include "pellucid/transfer/gaussian.h"
 #include "scene_json_parts.h"
+#include "text/printable.h"
 
 namespace pellucid::scene_json {
 

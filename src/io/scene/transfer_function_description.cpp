@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "pellucid/scene/error.h"
-#include "text/json_document.h"
+#include "text/printable.h"
 
 namespace pellucid {
 namespace {
@@ -21,11 +21,10 @@ class ChannelIndex {
     if (found != channels_.end()) return static_cast<int>(found - channels_.begin());
     std::string list;
     for (const std::string& channel : known_) {
-      list += (list.empty() ? "" : ", ") + scene_json::printable(channel);
+      list += (list.empty() ? "" : ", ") + printable(channel);
     }
-    throw Error("transfer function: " + term + " looks at a channel \"" +
-                scene_json::printable(name) + "\", which is not there" +
-                scene_json::did_you_mean(name, {known_.begin(), known_.end()}) +
+    throw Error("transfer function: " + term + " looks at a channel \"" + printable(name) +
+                "\", which is not there" + did_you_mean(name, {known_.begin(), known_.end()}) +
                 "; there are: " + list);
   }
   std::vector<int> of(const std::vector<std::string>& names, const std::string& term) const {
@@ -65,7 +64,7 @@ TransferFunction make_transfer_function(const TransferFunctionDescription& descr
         "variable are needed here");
   }
   if (const auto* preset = std::get_if<PresetDescription>(&description)) {
-    throw Error("transfer function: the preset \"" + scene_json::printable(preset->name) +
+    throw Error("transfer function: the preset \"" + printable(preset->name) +
                 "\" is made of its data, which are not given here");
   }
   const OpacityTable& table = std::get<OpacityTable>(description);

@@ -24,12 +24,12 @@
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "text/json_file.h"
+#include "text/printable.h"
 #include "text/text.h"
 
 namespace pellucid {
 
 namespace fs = std::filesystem;
-using scene_json::printable;
 
 namespace {
 

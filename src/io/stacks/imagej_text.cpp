@@ -13,12 +13,10 @@
 #include <map>
 
 #include "pellucid/scene/error.h"
-#include "text/json_document.h"
+#include "text/printable.h"
 #include "text/text.h"
 
 namespace pellucid {
-
-using scene_json::printable;
 
 namespace {
 

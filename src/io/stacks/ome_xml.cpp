@@ -17,14 +17,12 @@
 #include <utility>
 
 #include "pellucid/scene/error.h"
-#include "text/json_document.h"
+#include "text/printable.h"
 #include "text/readable_number.h"
 #include "text/text.h"
 #include "text/xml_scanner.h"
 
 namespace pellucid {
-
-using scene_json::printable;
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "text/json_document.h"
+#include "text/printable.h"
 #include "text/readable_number.h"
 
 namespace pellucid {
@@ -26,7 +26,7 @@ void PageMarks::compare(const std::vector<PageMark>& marks, const std::string& w
 
 std::vector<std::string> PageMarks::notes() const {
   const auto text = [](const std::string& value) {
-    return value.empty() ? std::string("not said") : scene_json::printable(value);
+    return value.empty() ? std::string("not said") : printable(value);
   };
   std::vector<std::string> notes;
   for (const Difference& difference : differences_) {
@@ -34,7 +34,7 @@ std::vector<std::string> PageMarks::notes() const {
     const std::size_t more = difference.pages - 1;
     notes.push_back("its pages differ in " + difference.first.key + ": " +
                     text(difference.first.value) + " at the first, " + text(difference.value) +
-                    " at " + scene_json::printable(difference.which) +
+                    " at " + printable(difference.which) +
                     (more == 0   ? ""
                      : more == 1 ? " (and 1 other differs)"
                                  : " (and " + std::to_string(more) + " others differ)") +

@@ -3,12 +3,10 @@
 
 #include <cmath>
 
-#include "text/json_document.h"
+#include "text/printable.h"
 #include "volumes/volume_source.h"
 
 namespace pellucid {
-
-using scene_json::printable;
 
 namespace {
 

@@ -13,12 +13,12 @@
 #include "axes/array_axes.h"
 #include "pellucid/scene/error.h"
 #include "text/json_file.h"
+#include "text/printable.h"
 #include "text/text.h"
 
 namespace pellucid {
 
 using scene_json::Node;
-using scene_json::printable;
 
 namespace {
 

@@ -15,15 +15,13 @@
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "shaped_text.h"
-#include "text/json_document.h"
 #include "text/json_file.h"
+#include "text/printable.h"
 #include "text/readable_number.h"
 #include "text/text.h"
 #include "tiff_tags.h"
 
 namespace pellucid {
-
-using scene_json::printable;
 
 namespace {
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "header_keys.h"
+#include "printable.h"
 
 #include <algorithm>
 #include <cstddef>
-
-#include "json_document.h"
 
 namespace pellucid {
 
@@ -18,7 +17,7 @@ void note_ignored_keys(const std::function<void(const std::string&)>& note, cons
   constexpr std::size_t most = 12, longest = 60;
   std::string list;
   for (std::size_t i = 0; i < std::min(most, once.size()); ++i) {
-    list += (i == 0 ? "" : ", ") + scene_json::printable(once[i].substr(0, longest));
+    list += (i == 0 ? "" : ", ") + printable(once[i].substr(0, longest));
   }
   if (once.size() > most) list += " and " + std::to_string(once.size() - most) + " more";
   note(name + ": the header says more than is taken into account: " + list);

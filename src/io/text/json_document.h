@@ -25,13 +25,6 @@ constexpr std::size_t deepest_scene = 16;
 nlohmann::json parse_document(std::string_view text, const std::string& name,
                               std::size_t deepest = deepest_scene);
 
-/// Text from a file as it may stand in a one-line message: control characters escaped, long text
-/// cut.
-std::string printable(std::string_view text);
-
-/// " (did you mean "x"?)" where a known word differs by a slip or two, else nothing.
-std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known);
-
 /// A value in the document together with its place, so that every message names both.
 class Node {
  public:

@@ -6,6 +6,7 @@
 
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/scene/error.h"
+#include "printable.h"
 
 namespace pellucid {
 
@@ -57,7 +58,7 @@ std::filesystem::path path_inside(const std::filesystem::path& folder, const std
                                   const std::string& name) {
   const std::filesystem::path part(relative);
   const auto refuse = [&](const std::string& what) {
-    throw Error(name + ": names \"" + scene_json::printable(relative) + "\", which " + what +
+    throw Error(name + ": names \"" + printable(relative) + "\", which " + what +
                 "; what is read must lie in the folder");
   };
   if (relative.find('\0') != std::string::npos) refuse("is no path");

@@ -2,6 +2,7 @@
 pellucid_io_sources(
   SOURCES
     json_document.cpp
+    printable.cpp
   LATER
     header_keys.cpp
     json_file.cpp

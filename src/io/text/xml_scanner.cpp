@@ -5,8 +5,8 @@
 #include <charconv>
 #include <utility>
 
-#include "json_document.h"
 #include "pellucid/scene/error.h"
+#include "printable.h"
 #include "text.h"
 
 namespace pellucid {
@@ -85,7 +85,7 @@ void XmlScanner::read_attributes(std::string_view inside, XmlTag& tag) const {
                                 ? std::string_view::npos
                                 : inside.find(quote, equals + 2);
     if (end == std::string_view::npos) {
-      throw Error(where(tag) + ": <" + scene_json::printable(tag.name) +
+      throw Error(where(tag) + ": <" + printable(tag.name) +
                   "> has an attribute without a quoted value");
     }
     tag.attributes[inside.substr(begin, equals - begin)] =

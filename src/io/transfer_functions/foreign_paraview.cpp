@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "foreign_readers.h"
+#include "text/printable.h"
 #include "text/text.h"
 
 namespace pellucid::foreign {
@@ -20,7 +21,7 @@ ColorSpace color_space(const Node& map, std::vector<std::string>& notes) {
     }
     return wrap && wrap->integer(0, 1) == 1 ? ColorSpace::hsv : ColorSpace::hsv_without_wrap;
   }
-  node->fail("is \"" + scene_json::printable(node->string()) +
+  node->fail("is \"" + printable(node->string()) +
              "\", which is not read; save the map as RGB, HSV, Lab, Diverging or Step");
 }
 
@@ -53,9 +54,9 @@ Node chosen(const Node& maps, const std::string& wanted) {
     const Node map = maps.element(i);
     if (!map.is_object()) map.fail("must be an object, a color map");
     if (wanted.empty() || name_of(map) == wanted) return map;
-    if (i < 8) names += (i > 0 ? ", \"" : "\"") + scene_json::printable(name_of(map)) + "\"";
+    if (i < 8) names += (i > 0 ? ", \"" : "\"") + printable(name_of(map)) + "\"";
   }
-  maps.fail("has no color map \"" + scene_json::printable(wanted) + "\"; there are " + names +
+  maps.fail("has no color map \"" + printable(wanted) + "\"; there are " + names +
             (count > 8 ? ", ..." : ""));
 }
 
@@ -69,7 +70,7 @@ Function read_paraview(const Node& document, const std::string& wanted) {
   function.name = name_of(map);
   if (several && document.array_size() > 1 && wanted.empty()) {
     function.notes.push_back("the first of " + std::to_string(document.array_size()) +
-                             " maps is taken, \"" + scene_json::printable(function.name) + "\"");
+                             " maps is taken, \"" + printable(function.name) + "\"");
   }
   if (map.has("IndexedColors") && !map.has("RGBPoints")) {
     map.fail_at("IndexedColors", "are colors of categories, not of values; take another map");

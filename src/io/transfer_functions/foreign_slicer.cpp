@@ -4,6 +4,7 @@
 #include "foreign_readers.h"
 #include "foreign_text.h"
 #include "pellucid/scene/error.h"
+#include "text/printable.h"
 
 namespace pellucid::foreign {
 namespace {
@@ -86,8 +87,7 @@ Function read_slicer(const Node& document) {
   const Node property = first(document, "volumeProperties", function);
   const Node component = first(property, "components", function);
   if (const auto kind = property.find("interpolationType"); kind && kind->string() != "linear") {
-    function.notes.push_back("data are trilinear here, not \"" +
-                             scene_json::printable(kind->string()) + "\"");
+    function.notes.push_back("data are trilinear here, not \"" + printable(kind->string()) + "\"");
   }
   if (const auto shade = component.find("shade"); shade && shade->is_true()) {
     set_shading(lighting(component), function);

@@ -8,6 +8,7 @@
 
 #include "pellucid/scene/error.h"
 #include "text/json_document.h"
+#include "text/printable.h"
 
 namespace pellucid::foreign {
 
@@ -37,8 +38,7 @@ double number_of(std::string_view word, const std::string& where) {
   const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (problem != std::errc() || end != digits.data() + digits.size() ||
       !(std::abs(value) <= scene_json::largest_number)) {
-    throw Error(where + ": \"" + scene_json::printable(word) +
-                "\" is no number from -1e30 to 1e30");
+    throw Error(where + ": \"" + printable(word) + "\" is no number from -1e30 to 1e30");
   }
   return value;
 }

@@ -7,6 +7,7 @@
 #include "foreign_readers.h"
 #include "foreign_text.h"
 #include "pellucid/scene/error.h"
+#include "text/printable.h"
 #include "text/xml_scanner.h"
 
 namespace pellucid::foreign {
@@ -18,7 +19,7 @@ using Tag = XmlTag;
 double attribute(const Tag& tag, std::string_view key, const std::string& where) {
   const auto found = tag.attributes.find(key);
   if (found == tag.attributes.end()) {
-    throw Error(where + ": <" + scene_json::printable(tag.name) + "> has no " + std::string(key));
+    throw Error(where + ": <" + printable(tag.name) + "> has no " + std::string(key));
   }
   return number_of(found->second, where);
 }
@@ -36,7 +37,7 @@ ColorSpace space_of(std::string_view word, const std::string& where) {
   if (word == "Lab" || word == "CIELAB") return ColorSpace::lab;
   if (word == "Diverging") return ColorSpace::diverging;
   if (word == "Step") return ColorSpace::step;
-  throw Error(where + ": the space \"" + scene_json::printable(word) +
+  throw Error(where + ": the space \"" + printable(word) +
               "\" is not read; save the map as RGB, HSV, Lab, Diverging or Step");
 }
 
@@ -81,11 +82,11 @@ Function read_color_maps(Scanner& scanner, Tag tag, const std::string& name,
   }
   if (!found) {
     throw Error(name + ": has no color map" +
-                (wanted.empty() ? "" : " \"" + scene_json::printable(wanted) + "\""));
+                (wanted.empty() ? "" : " \"" + printable(wanted) + "\""));
   }
   if (count > 1 && wanted.empty()) {
     function.notes.push_back("the first of " + std::to_string(count) + " maps is taken, \"" +
-                             scene_json::printable(function.name) + "\"");
+                             printable(function.name) + "\"");
   }
   complete(function, name);
   return function;
@@ -138,12 +139,12 @@ void visit_setting(Function& function, std::string_view key, std::string_view te
     throw Error(where + ": the opacity mode is not Gaussian; only that one is read");
   }
   if (key == "scaling" && (is("Log", "1") || is("Skew", "2"))) {
-    throw Error(where + ": the scaling is \"" + scene_json::printable(value) +
+    throw Error(where + ": the scaling is \"" + printable(value) +
                 "\", not Linear; only that one is read");
   }
   if (key == "opacityAttenuation") note("VisIt's attenuation of opacities is");
   if (key == "smoothing" && !is("None", "0") && !is("Linear", "1")) {
-    note("the smoothing of colors, \"" + scene_json::printable(value) + "\", is");
+    note("the smoothing of colors, \"" + printable(value) + "\", is");
   }
   for (const std::string_view limit : {"useColorVarMin", "useColorVarMax"}) {
     if (key != limit || !is("true", "1")) continue;

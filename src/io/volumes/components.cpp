@@ -11,7 +11,7 @@
 #include "color_volume.h"
 #include "files/memory_limit.h"
 #include "pellucid/scene/error.h"
-#include "text/json_document.h"
+#include "text/printable.h"
 
 namespace pellucid {
 
@@ -56,10 +56,10 @@ int named_component(const VolumeFile& file, const std::string& wanted) {
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   throw Error(file.description.name + ": " +
               (std::ranges::count(names, wanted) > 1 ? "more than one" : "no") +
-              " component is called \"" + scene_json::printable(wanted) + "\"" +
-              (names.empty() ? "; its components have no names, give a number, " + choices(file)
-                             : "; their names are " + scene_json::printable(list) +
-                                   ", their numbers " + choices(file)));
+              " component is called \"" + printable(wanted) + "\"" +
+              (names.empty()
+                   ? "; its components have no names, give a number, " + choices(file)
+                   : "; their names are " + printable(list) + ", their numbers " + choices(file)));
 }
 
 /// Returns the component that the options name, or their time; nothing where they name none. Throws

@@ -20,13 +20,13 @@
 #include "files/gzip_source.h"
 #include "pellucid/scene/error.h"
 #include "text/json_file.h"
+#include "text/printable.h"
 #include "volumes/array_statistics.h"
 
 namespace pellucid {
 
 namespace fs = std::filesystem;
 using scene_json::Node;
-using scene_json::printable;
 
 namespace {
 

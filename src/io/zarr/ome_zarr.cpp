@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "pellucid/scene/error.h"
+#include "text/printable.h"
 
 namespace pellucid {
 
 using scene_json::Node;
-using scene_json::printable;
 
 namespace {
 

@@ -16,6 +16,7 @@
 #include "meshes/mesh_blocks.h"
 #include "pellucid/io/pyramid.h"
 #include "pellucid/scene/error.h"
+#include "text/printable.h"
 #include "text/text.h"
 #include "volumes/array_statistics.h"
 #include "zarr_axes.h"
@@ -28,7 +29,6 @@ namespace pellucid {
 
 namespace fs = std::filesystem;
 using scene_json::Node;
-using scene_json::printable;
 
 namespace {
 

@@ -9,12 +9,12 @@
 #include "axes/array_axes.h"
 #include "axes/time_steps.h"
 #include "pellucid/scene/error.h"
+#include "text/printable.h"
 #include "zarr_variable.h"
 
 namespace pellucid {
 
 namespace fs = std::filesystem;
-using scene_json::printable;
 
 namespace {
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pellucid/scene/error.h"
+#include "text/printable.h"
 #include "text/text.h"
 
 namespace pellucid {
@@ -25,7 +26,7 @@ std::string other_names(const OmeImage& image, const ZarrArray& array) {
     are_alike = are_alike && (own[a].empty() ||
                               in_small_letters(own[a]) == in_small_letters(image.axes[a].name));
     said += (a == 0 ? "" : ", ") + image.axes[a].name;
-    names += (a == 0 ? "" : ", ") + scene_json::printable(own[a]);
+    names += (a == 0 ? "" : ", ") + printable(own[a]);
   }
   if (are_alike) return {};
   return "its image names the axes " + said + ", but its array " + names +

@@ -16,12 +16,12 @@
 #include <utility>
 
 #include "pellucid/scene/error.h"
+#include "text/printable.h"
 #include "volumes/stored_numbers.h"
 
 namespace pellucid {
 
 using scene_json::Node;
-using scene_json::printable;
 
 namespace {
 

@@ -9,6 +9,7 @@
 
 #include "axes/variable_notes.h"
 #include "pellucid/scene/error.h"
+#include "text/printable.h"
 #include "zarr_axes.h"
 #include "zarr_variable.h"
 
@@ -16,7 +17,6 @@ namespace pellucid {
 
 namespace fs = std::filesystem;
 using scene_json::Node;
-using scene_json::printable;
 
 namespace {
 
