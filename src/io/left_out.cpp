@@ -10,8 +10,18 @@
 #include "pellucid/io/import_transfer_function.h"
 #include "pellucid/io/mesh_source.h"
 #include "pellucid/io/read_mesh.h"
+#include "pellucid/io/read_volume.h"
+#include "volumes/unread_formats.h"
 
 namespace pellucid {
+
+// Volumes of formats that are not in the table.
+
+void refuse_unread_format(const std::filesystem::path&) {}
+
+void refuse_unknown_format(const std::filesystem::path& path) {
+  throw left_out(path.string() + ": what reads it (read are " + volume_extensions() + ")");
+}
 
 // Meshes.
 

@@ -5,7 +5,7 @@
 
 #include "read_volumes.h"
 #include "src/io/mrc/mrc.h"
-#include "src/io/volumes/medical_volumes.h"
+#include "src/io/nifti/mgh.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   pellucid::fuzz::read_volumes(data, size, [](const pellucid::ByteSource& source) {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dicom.h"
-
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -12,6 +10,8 @@
 #include "dicom_grid.h"
 #include "dicom_values.h"
 #include "pellucid/scene/error.h"
+#include "volumes/components.h"
+#include "volumes/volume_format.h"
 
 namespace pellucid {
 
@@ -58,8 +58,7 @@ std::string unit_of(const std::vector<DicomSlice>& slices) {
   return same ? unit : std::string();
 }
 
-}  // namespace
-
+/// Opens a series without the files for which reading it threw DamagedDicom.
 VolumeFile open_dicom_without(const std::vector<DamagedDicomFile>& damaged,
                               const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
@@ -102,13 +101,29 @@ VolumeFile open_dicom_without(const std::vector<DamagedDicomFile>& damaged,
   return file;
 }
 
+/// A DICOM series: a folder with its files, or any one of them. One file per slice, or frames with
+/// functional groups or a vector of their positions; sorted by position. The world is LPS, in
+/// millimetres. Values are those behind rescale slope and intercept, or the scaling of a dose.
+/// Colors are components. Compressed pixels go through GDCM. Damaged files of a folder are left
+/// out, and `options.note` is told.
+VolumeFile open_dicom(const std::filesystem::path& path, const ReadOptions& options) {
+  return open_dicom_without({}, path, options);
+}
+
+}  // namespace
+
 std::string dicom_unit(const std::filesystem::path& path,
                        const std::optional<std::string>& series) {
   return unit_of(choose_dicom_series(scan_dicom_folder(path), path, series).slices);
 }
 
-VolumeFile open_dicom(const std::filesystem::path& path, const ReadOptions& options) {
-  return open_dicom_without({}, path, options);
-}
+extern const VolumeFormat dicom_format{.name = "DICOM",
+                                       .extensions = ".dcm .ima",
+                                       .takes_folder = is_dicom,
+                                       .takes_unknown_name = is_dicom,
+                                       .open = open_dicom,
+                                       .open_without = open_dicom_without,
+                                       .has_series = true,
+                                       .is_of_patients = true};
 
 }  // namespace pellucid

@@ -14,7 +14,8 @@ pellucid_io_sources(
     dicom_volumes.cpp
   LOOPS
     dicom_decode.cpp
-    dicom_values.cpp)
+    dicom_values.cpp
+  VOLUME_FORMATS dicom_format)
 
 # GDCM decompresses DICOM's pixels. Its package wants its tools too, which need not be installed.
 find_path(PELLUCID_GDCM_INCLUDE gdcmImageReader.h PATH_SUFFIXES gdcm-3.0)

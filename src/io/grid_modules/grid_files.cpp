@@ -18,9 +18,6 @@
 #include "files/memory_limit.h"
 #include "grid_answer.h"
 #include "meshes/mesh_blocks.h"
-#include "netcdf/net_cdf_size.h"
-#include "openvdb/vdb_size.h"
-#include "pellucid/io/module.h"
 #include "pellucid/scene/error.h"
 #include "process/contained.h"
 #include "process/contained_values.h"
@@ -31,26 +28,12 @@ namespace pellucid {
 
 namespace {
 
-struct Format {
-  Module module;
-  const char* wanted;  ///< what a volume is among its arrays
-};
-
-constexpr const char* three_axes = "array of three or four axes of numbers";
-constexpr Format hdf5{{"pellucid_hdf5.so", "reads HDF5 files", "HDF5 (Debian: libhdf5-dev)"},
-                      three_axes};
-constexpr Format net_cdf{
-    {"pellucid_netcdf.so", "reads NetCDF files", "NetCDF (Debian: libnetcdf-dev)"}, three_axes};
-constexpr Format vdb{
-    {"pellucid_openvdb.so", "reads OpenVDB files", "OpenVDB (Debian: libopenvdb-dev)"},
-    "fog volume"};
-
 /// Calls a module's function in a process of its own: `work` says with what, where its answer goes,
 /// and whether that is well. The module is loaded there and nowhere else.
 template <class Function>
 std::shared_ptr<std::byte> contained(
-    const Format& format, const char* name, const std::filesystem::path& path, std::size_t bytes,
-    const std::function<bool(Function&, std::span<std::byte>)>& work) {
+    const GridFormat& format, const char* name, const std::filesystem::path& path,
+    std::size_t bytes, const std::function<bool(Function&, std::span<std::byte>)>& work) {
   const std::uintmax_t file_bytes = check_input_file(path);
   std::shared_ptr<std::byte> answer;
   try {
@@ -81,7 +64,7 @@ std::string list_of(const std::vector<GridOther>& others) {
 }
 
 GridContents contents_of(const std::filesystem::path& path, const ReadOptions& options,
-                         const Format& format) {
+                         const GridFormat& format) {
   // Room for the positions along axes; what is not written to is no memory.
   constexpr std::size_t room = std::size_t{16} << 20;
   const auto bytes = contained<ListGrids>(format, list_grids_name, path, room,
@@ -101,7 +84,7 @@ GridContents contents_of(const std::filesystem::path& path, const ReadOptions& o
 
 /// With or without the slash in front.
 const GridArray& choose(const GridContents& contents, const ReadOptions& options,
-                        const Format& format, const std::string& name) {
+                        const GridFormat& format, const std::string& name) {
   if (!options.array) return contents.arrays.front();
   const auto bare = [](const std::string& text) {
     return text.starts_with('/') ? text.substr(1) : text;
@@ -179,7 +162,7 @@ class Trailer {
   std::span<std::byte> error_, note_, types_;
 };
 
-std::vector<VolumeData> read_values(const std::filesystem::path& path, const Format& format,
+std::vector<VolumeData> read_values(const std::filesystem::path& path, const GridFormat& format,
                                     const GridArray& array, const ReadOptions& options,
                                     ComponentRange range) {
   const std::string name = path.string();
@@ -258,8 +241,10 @@ void choose_time(const GridArray& array, const ReadOptions& options, const std::
   };
 }
 
+}  // namespace
+
 VolumeFile open_grid(const std::filesystem::path& path, const ReadOptions& options,
-                     const Format& format) {
+                     const GridFormat& format) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
   const GridContents contents = contents_of(path, options, format);
@@ -287,8 +272,8 @@ VolumeFile open_grid(const std::filesystem::path& path, const ReadOptions& optio
   return file;
 }
 
-std::vector<VolumeArray> list_arrays(const std::filesystem::path& path, const Format& format,
-                                     const ReadOptions& options = {}) {
+std::vector<VolumeArray> list_grid_arrays(const std::filesystem::path& path,
+                                          const GridFormat& format, const ReadOptions& options) {
   const GridContents contents = contents_of(path, options, format);
   ReadOptions quiet = options;
   quiet.note = {};
@@ -325,39 +310,6 @@ std::vector<VolumeArray> list_arrays(const std::filesystem::path& path, const Fo
     list.push_back(std::move(about));
   }
   return list;
-}
-
-}  // namespace
-
-VolumeFile open_hdf5(const std::filesystem::path& path, const ReadOptions& options) {
-  return open_grid(path, options, hdf5);
-}
-
-VolumeFile open_net_cdf(const std::filesystem::path& path, const ReadOptions& options) {
-  check_input_file(path);
-  check_net_cdf_size(path);
-  return open_grid(path, options, net_cdf);
-}
-
-std::vector<VolumeArray> list_hdf5_arrays(const std::filesystem::path& path,
-                                          const ReadOptions& options) {
-  return list_arrays(path, hdf5, options);
-}
-
-std::vector<VolumeArray> list_net_cdf_arrays(const std::filesystem::path& path) {
-  check_input_file(path);
-  check_net_cdf_size(path);
-  return list_arrays(path, net_cdf);
-}
-
-VolumeFile open_vdb(const std::filesystem::path& path, const ReadOptions& options) {
-  check_vdb_size(path);
-  return open_grid(path, options, vdb);
-}
-
-std::vector<VolumeArray> list_vdb_arrays(const std::filesystem::path& path) {
-  check_vdb_size(path);
-  return list_arrays(path, vdb);
 }
 
 }  // namespace pellucid

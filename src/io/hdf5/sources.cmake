@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 pellucid_io_sources(
   LATER
+    hdf5_format.cpp
     vtk_hdf.cpp
     vtk_hdf_mesh.cpp
-    vtk_hdf_volume.cpp)
+    vtk_hdf_volume.cpp
+  VOLUME_FORMATS hdf5_format vtk_hdf_format)
 
 include("${CMAKE_CURRENT_SOURCE_DIR}/grid_modules/grid_module.cmake")
 set(hdf5_sources

@@ -89,9 +89,6 @@ class VtkHdfValues {
   std::shared_ptr<std::byte> all_;
 };
 
-/// ImageData.
-VolumeFile open_vtk_hdf(const std::filesystem::path& path, const ReadOptions& options);
-std::vector<VolumeArray> list_vtk_hdf_arrays(const std::filesystem::path& path);
 /// UnstructuredGrid, each piece a block.
 MeshBlocks read_vtk_hdf(const std::filesystem::path& path, const MeshReadOptions& options);
 

@@ -5,8 +5,11 @@
 #include <string>
 #include <utility>
 
+#include "hdf5_format.h"
+#include "pellucid/io/read_mesh.h"
 #include "pellucid/scene/error.h"
 #include "volumes/array_statistics.h"
+#include "volumes/volume_format.h"
 #include "vtk_hdf.h"
 
 namespace pellucid {
@@ -180,8 +183,6 @@ std::vector<VolumeData> read_values(const std::filesystem::path& path, const Nam
   return components;
 }
 
-}  // namespace
-
 VolumeFile open_vtk_hdf(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
@@ -233,5 +234,22 @@ std::vector<VolumeArray> list_vtk_hdf_arrays(const std::filesystem::path& path) 
   }
   return list;
 }
+
+}  // namespace
+
+/// Files of HDF5, and of a name that says nothing else, by the group that they have.
+extern const VolumeFormat vtk_hdf_format{
+    .name = "VTKHDF",
+    .extensions = ".vtkhdf .hdf",
+    .takes_content =
+        [](const std::filesystem::path& path, const VolumeFormat* by_name) {
+          if (by_name != nullptr && by_name != &hdf5_format) return false;
+          const std::string type = vtk_hdf_type(path);
+          return !type.empty() && type != "UnstructuredGrid";
+        },
+    .refuses = is_mesh_file,
+    .open = open_vtk_hdf,
+    .list = [](const std::filesystem::path& path,
+               const ReadOptions&) { return list_vtk_hdf_arrays(path); }};
 
 }  // namespace pellucid

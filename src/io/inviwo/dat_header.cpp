@@ -4,8 +4,6 @@
 // "ObjectFileName: name", "Resolution: x y z", "Format: UINT8", and what else they say, in any
 // order.
 
-#include "dat_header.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -26,6 +24,8 @@
 #include "pellucid/scene/error.h"
 #include "text/printable.h"
 #include "text/text.h"
+#include "volumes/components.h"
+#include "volumes/volume_format.h"
 
 namespace pellucid {
 
@@ -193,13 +193,15 @@ bool is_big_endian(const Fields& fields, const std::string& name) {
               "\" is neither LittleEndian nor BigEndian; mend the header");
 }
 
-}  // namespace
-
+/// Whether a file is a header of Inviwo or Voreen: lines "Key: value", one of which names the file
+/// of values.
 bool is_dat_header(const fs::path& path) {
   const Fields fields = read_fields(path, path.string());
   return (!file_of(fields).empty() && has_dimensions(fields)) || fields.contains("datfile");
 }
 
+/// Such a header (.dat) and its file of values. Of Voreen the spacing (SliceThickness), of Inviwo
+/// basis vectors and offset, which span the cells that the values are the centres of. Throws Error.
 VolumeFile open_dat(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
@@ -236,5 +238,10 @@ VolumeFile open_dat(const fs::path& path, const ReadOptions& options) {
   header.ignored_keys = ignored_keys(fields);
   return open_inviwo_values(header, name, options);
 }
+
+}  // namespace
+
+extern const VolumeFormat dat_format{
+    .name = "Inviwo or Voreen, .dat", .takes_unknown_name = is_dat_header, .open = open_dat};
 
 }  // namespace pellucid

@@ -11,6 +11,7 @@
 #include "files/gzip_source.h"
 #include "files/memory_limit.h"
 #include "pellucid/scene/error.h"
+#include "raw/raw.h"
 #include "text/header_keys.h"
 #include "text/printable.h"
 #include "text/text.h"

@@ -5,8 +5,6 @@
 // older files <MetaDataItem key="LittleEndian"> with <MetaData content="0|1">, <Compression
 // content=""> (1: gzip), <BasisAndOffset> and <WorldTransform> with <col0 x="" y="" z="" w="">.
 
-#include "ivf_header.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,6 +19,8 @@
 #include "pellucid/scene/error.h"
 #include "text/xml_scanner.h"
 #include "transfer_functions/foreign_text.h"
+#include "volumes/components.h"
+#include "volumes/volume_format.h"
 
 namespace pellucid {
 
@@ -162,8 +162,9 @@ class Reader {
   std::set<std::string> seen_;
 };
 
-}  // namespace
-
+/// Inviwo's XML header (.ivf) and its file of values, which may be gzipped. Its BasisAndOffset
+/// spans the cells that the values are the centres of, in the world that WorldTransform says.
+/// Throws Error, also for several files of values.
 VolumeFile open_ivf(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
@@ -180,5 +181,9 @@ VolumeFile open_ivf(const std::filesystem::path& path, const ReadOptions& option
   }
   return open_inviwo_values(header, name, options);
 }
+
+}  // namespace
+
+extern const VolumeFormat ivf_format{.name = "Inviwo", .extensions = ".ivf", .open = open_ivf};
 
 }  // namespace pellucid

@@ -4,4 +4,5 @@ pellucid_io_sources(
     dat_header.cpp
     inviwo_values.cpp
     ivf_header.cpp
-    vvd_header.cpp)
+    vvd_header.cpp
+  VOLUME_FORMATS dat_format ivf_format vvd_format)

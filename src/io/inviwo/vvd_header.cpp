@@ -5,8 +5,6 @@
 // name=""> of Offset and Spacing with <value x="" y="" z="">, of Transformation with <value.row0
 // x="" y="" z="" w=""> to row3, and of RealWorldMapping with <value scale="" offset="" unit="">.
 
-#include "vvd_header.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,6 +27,8 @@
 #include "text/text.h"
 #include "text/xml_scanner.h"
 #include "transfer_functions/foreign_text.h"
+#include "volumes/components.h"
+#include "volumes/volume_format.h"
 
 namespace pellucid {
 
@@ -215,8 +215,9 @@ VolumeData mapped(VolumeData stored, const Mapping& mapping, const std::string& 
       stored);
 }
 
-}  // namespace
-
+/// A volume of Voreen (.vvd): a header in XML that names a file of values. Values stand at the
+/// offset and from there at steps of the spacing, both turned by the transformation. A mapping to
+/// real values other than Voreen's default is applied.
 VolumeFile open_vvd(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
@@ -245,5 +246,9 @@ VolumeFile open_vvd(const fs::path& path, const ReadOptions& options) {
   }
   return file;
 }
+
+}  // namespace
+
+extern const VolumeFormat vvd_format{.name = "Voreen", .extensions = ".vvd", .open = open_vvd};
 
 }  // namespace pellucid

@@ -13,7 +13,9 @@
 #include <numbers>
 #include <string_view>
 
+#include "files/gzip_source.h"
 #include "pellucid/scene/error.h"
+#include "volumes/volume_format.h"
 
 namespace pellucid {
 
@@ -228,5 +230,12 @@ VolumeFile open_mrc(const ByteSource& source, const ReadOptions& options) {
   };
   return file;
 }
+
+extern const VolumeFormat mrc_format{
+    .name = "MRC",
+    .extensions = ".mrc .map .rec .st .ccp4 .mrc.gz .map.gz .rec.gz .st.gz .ccp4.gz",
+    .open = [](const std::filesystem::path& path, const ReadOptions& options) {
+      return open_mrc(plain_or_gzip_source(path), options);
+    }};
 
 }  // namespace pellucid

@@ -3,4 +3,5 @@ pellucid_io_sources(
   LATER
     mrc.cpp
   LOOPS
-    mrc.cpp)
+    mrc.cpp
+  VOLUME_FORMATS mrc_format)

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 pellucid_io_sources(
   LATER
-    net_cdf_size.cpp)
+    netcdf_format.cpp
+    net_cdf_size.cpp
+  VOLUME_FORMATS netcdf_format)
 
 include("${CMAKE_CURRENT_SOURCE_DIR}/grid_modules/grid_module.cmake")
 set(netcdf_sources

@@ -4,6 +4,8 @@
 // header of 284 bytes, the values frame by frame, and tags behind them that say nothing of a
 // volume.
 
+#include "mgh.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -18,7 +20,7 @@
 #include "pellucid/scene/error.h"
 #include "ras_affine.h"
 #include "volumes/components.h"
-#include "volumes/medical_volumes.h"
+#include "volumes/volume_format.h"
 
 namespace pellucid {
 
@@ -164,8 +166,13 @@ VolumeFile open_mgh_bytes(const ByteSource& source, const ReadOptions& options) 
   return file;
 }
 
-VolumeFile open_mgh(const std::filesystem::path& path, const ReadOptions& options) {
-  return open_mgh_bytes(plain_or_gzip_source(path), options);
-}
+extern const VolumeFormat mgh_format{
+    .name = "MGH",
+    .extensions = ".mgz .mgh .mgh.gz",
+    .open =
+        [](const std::filesystem::path& path, const ReadOptions& options) {
+          return open_mgh_bytes(plain_or_gzip_source(path), options);
+        },
+    .is_of_patients = true};
 
 }  // namespace pellucid

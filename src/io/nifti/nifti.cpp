@@ -15,7 +15,7 @@
 #include "pellucid/scene/error.h"
 #include "ras_affine.h"
 #include "volumes/components.h"
-#include "volumes/medical_volumes.h"
+#include "volumes/volume_format.h"
 
 namespace pellucid {
 
@@ -246,8 +246,10 @@ void note_header(const NiftiHeader& header, const NiftiFiles& files, const std::
   }
 }
 
-}  // namespace
-
+/// NIfTI-1 and NIfTI-2: .nii, or .hdr with .img, each also .gz; Analyze 7.5. The world is LPS. The
+/// map is the sform where it is the scanner's or stands alone, else the qform (as ITK 5.2 chooses),
+/// else what nibabel and SPM take. Colors, and an axis behind the third, are components; several
+/// such axes, complex numbers and CIFTI are refused.
 VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
@@ -286,5 +288,12 @@ VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& opti
   };
   return file;
 }
+
+}  // namespace
+
+extern const VolumeFormat nifti_format{.name = "NIfTI",
+                                       .extensions = ".nii .nii.gz .hdr .hdr.gz .img .img.gz",
+                                       .open = open_nifti,
+                                       .is_of_patients = true};
 
 }  // namespace pellucid

@@ -9,4 +9,6 @@ pellucid_io_sources(
     write_nifti.cpp
   LOOPS
     nifti.cpp
-    write_nifti.cpp)
+    write_nifti.cpp
+  FIRST_VOLUME_FORMATS nifti_format
+  VOLUME_FORMATS mgh_format)

@@ -22,6 +22,7 @@
 #include "files/memory_limit.h"
 #include "pellucid/scene/error.h"
 #include "volumes/stored_numbers.h"
+#include "volumes/volume_format.h"
 
 namespace pellucid {
 
@@ -472,10 +473,6 @@ VolumeFile open_array(const ByteSource& source, const ReadOptions& options, Behi
 
 }  // namespace
 
-VolumeFile open_npy(const ByteSource& source, const ReadOptions& options) {
-  return open_array(source, options, Behind::noted);
-}
-
 VolumeFile open_npy_alone(const ByteSource& source, const ReadOptions& options,
                           std::span<const ArrayBeside> beside) {
   return open_array(source, options, Behind::refused, beside);
@@ -485,5 +482,15 @@ Volume parse_npy(const std::vector<std::byte>& bytes, const std::string& name,
                  const ReadOptions& options) {
   return read_chosen(open_npy_alone(memory_source(bytes, name), options), options);
 }
+
+/// Opens the first array of the file, as numpy.load reads it; tells of bytes behind it.
+extern const VolumeFormat npy_format{
+    .name = "NumPy array",
+    .extensions = ".npy",
+    .open =
+        [](const std::filesystem::path& path, const ReadOptions& options) {
+          return open_array(file_source(path), options, Behind::noted);
+        },
+    .takes_axes = true};
 
 }  // namespace pellucid

@@ -2,13 +2,15 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "volumes/components.h"
 
 namespace pellucid {
+
+struct ArrayBeside;
 
 /// What the header of a .npy file says.
 struct NpyArray {
@@ -25,8 +27,10 @@ NpyArray read_npy_header(const ByteSource& source);
 /// Returns the values of a small array, the last axis fastest. Throws Error.
 std::vector<double> read_npy_numbers(const ByteSource& source);
 
-/// The arrays of an archive of .npy files, as numpy.savez writes it.
-std::vector<VolumeArray> list_npz_arrays(const std::filesystem::path& path,
-                                         const ReadOptions& options);
+/// Opens the array of a .npy file behind which nothing may be, as in a .npz file, whose entries
+/// have one array each. `beside` are the other arrays of the archive, which may say positions.
+/// Throws Error.
+VolumeFile open_npy_alone(const ByteSource& source, const ReadOptions& options,
+                          std::span<const ArrayBeside> beside = {});
 
 }  // namespace pellucid

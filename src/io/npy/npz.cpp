@@ -17,6 +17,7 @@
 #include "npy.h"
 #include "pellucid/scene/error.h"
 #include "volumes/array_statistics.h"
+#include "volumes/volume_format.h"
 
 namespace pellucid {
 
@@ -156,8 +157,6 @@ const NpzArray& choose(const ByteSource& archive, const std::vector<NpzArray>& a
   return *only;
 }
 
-}  // namespace
-
 VolumeFile open_npz(const ByteSource& source, const ReadOptions& options) {
   refuse_raw_options(options, source.name);
   std::vector<NpzArray> arrays = arrays_of(source);
@@ -202,9 +201,19 @@ std::vector<VolumeArray> list_npz_arrays(const std::filesystem::path& path,
   return list;
 }
 
+}  // namespace
+
 Volume parse_npz(const std::vector<std::byte>& bytes, const std::string& name,
                  const ReadOptions& options) {
   return read_chosen(open_npz(memory_source(bytes, name), options), options);
 }
+
+extern const VolumeFormat npz_format{
+    .name = "NumPy archive",
+    .extensions = ".npz",
+    .open = [](const std::filesystem::path& path,
+               const ReadOptions& options) { return open_npz(file_source(path), options); },
+    .list = list_npz_arrays,
+    .takes_axes = true};
 
 }  // namespace pellucid

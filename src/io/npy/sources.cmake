@@ -5,4 +5,6 @@ pellucid_io_sources(
   LATER
     npz.cpp
   LOOPS
-    npy.cpp)
+    npy.cpp
+  FIRST_VOLUME_FORMATS npy_format
+  VOLUME_FORMATS npz_format)

@@ -23,7 +23,7 @@
 #include "text/printable.h"
 #include "text/text.h"
 #include "volumes/components.h"
-#include "volumes/medical_volumes.h"
+#include "volumes/volume_format.h"
 
 namespace pellucid {
 
@@ -340,8 +340,8 @@ void note_fields(const std::vector<Field>& fields, const MetaImageHeader& header
   note_ignored_keys(note, name, ignored);
 }
 
-}  // namespace
-
+/// MetaImage, .mha or .mhd, raw or zlib; values in one file or in one per slice. Channels and a
+/// fourth axis are components.
 VolumeFile open_meta_image(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
@@ -371,5 +371,12 @@ VolumeFile open_meta_image(const fs::path& path, const ReadOptions& options) {
   };
   return file;
 }
+
+}  // namespace
+
+extern const VolumeFormat meta_image_format{.name = "MetaImage",
+                                            .extensions = ".mha .mhd",
+                                            .open = open_meta_image,
+                                            .is_of_patients = true};
 
 }  // namespace pellucid

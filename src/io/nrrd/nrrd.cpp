@@ -22,7 +22,8 @@
 #include "pellucid/io/temporary_folder.h"
 #include "pellucid/scene/error.h"
 #include "text/text.h"
-#include "volumes/medical_volumes.h"
+#include "volumes/components.h"
+#include "volumes/volume_format.h"
 
 namespace pellucid {
 
@@ -337,8 +338,10 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-}  // namespace
-
+/// NRRD, attached (.nrrd) or detached (.nhdr), raw, gzip, bzip2, ascii or hex. Turned from RAS or
+/// LAS to LPS; other spaces are taken as they are. Of a space of four axes the fourth is time.
+/// Cell-centred where all three axes say so. A first or last axis that is none of space, by its
+/// kind or for want of a direction, holds components, and so does a fourth axis.
 VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
@@ -393,5 +396,10 @@ VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
   };
   return file;
 }
+
+}  // namespace
+
+extern const VolumeFormat nrrd_format{
+    .name = "NRRD", .extensions = ".nrrd .nhdr", .open = open_nrrd, .is_of_patients = true};
 
 }  // namespace pellucid

@@ -9,7 +9,8 @@ pellucid_io_sources(
     nrrd_space.cpp
     write_nrrd.cpp
   LOOPS
-    write_nrrd.cpp)
+    write_nrrd.cpp
+  VOLUME_FORMATS nrrd_format meta_image_format)
 
 if(PELLUCID_WITH_ITK)
   # ITK's package file looks for all that ITK was built with, at length, and asks a C compiler.

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 pellucid_io_sources(
   LATER
-    vdb_size.cpp)
+    vdb_format.cpp
+    vdb_size.cpp
+  VOLUME_FORMATS vdb_format)
 
 include("${CMAKE_CURRENT_SOURCE_DIR}/grid_modules/grid_module.cmake")
 if(PELLUCID_WITH_OPENVDB)

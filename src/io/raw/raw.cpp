@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "raw.h"
+
 #include <utility>
 
 #include "files/input_file.h"
 #include "pellucid/scene/error.h"
 #include "volumes/components.h"
+#include "volumes/volume_format.h"
 
 namespace pellucid {
 
@@ -64,6 +67,8 @@ VolumeFile open_raw(const ByteSource& source, const ReadOptions& options) {
   return std::move(raw.file);
 }
 
+namespace {
+
 VolumeFile open_raw_gzip(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   RawShape raw(name, options);
@@ -84,9 +89,23 @@ VolumeFile open_raw_gzip(const std::filesystem::path& path, const ReadOptions& o
   return std::move(raw.file);
 }
 
+}  // namespace
+
 Volume parse_raw(const std::vector<std::byte>& bytes, const std::string& name,
                  const ReadOptions& options) {
   return read_chosen(open_raw(memory_source(bytes, name), options), options);
 }
+
+extern const VolumeFormat raw_format{
+    .name = "headerless data",
+    .extensions = ".raw",
+    .open = [](const std::filesystem::path& path,
+               const ReadOptions& options) { return open_raw(file_source(path), options); },
+    .has_header = false};
+
+extern const VolumeFormat raw_gzip_format{.name = "headerless data, gzipped",
+                                          .extensions = ".raw.gz",
+                                          .open = open_raw_gzip,
+                                          .has_header = false};
 
 }  // namespace pellucid

@@ -5,4 +5,5 @@ pellucid_io_sources(
   LATER
     write_raw.cpp
   LOOPS
-    write_raw.cpp)
+    write_raw.cpp
+  FIRST_VOLUME_FORMATS raw_format raw_gzip_format)

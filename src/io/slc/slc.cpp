@@ -18,6 +18,7 @@
 
 #include "pellucid/scene/error.h"
 #include "volumes/components.h"
+#include "volumes/volume_format.h"
 
 namespace pellucid {
 
@@ -147,8 +148,6 @@ void read_slice(Cursor& cursor, std::span<std::uint8_t> slice) {
   }
 }
 
-}  // namespace
-
 VolumeFile open_slc(const ByteSource& source, const ReadOptions& options) {
   refuse_raw_options(options, source.name);
   const SlcHeader header = read_header(source);
@@ -175,9 +174,18 @@ VolumeFile open_slc(const ByteSource& source, const ReadOptions& options) {
   return file;
 }
 
+}  // namespace
+
 Volume parse_slc(const std::vector<std::byte>& bytes, const std::string& name,
                  const ReadOptions& options) {
   return read_chosen(open_slc(memory_source(bytes, name), options), options);
 }
+
+extern const VolumeFormat slc_format{
+    .name = "SLC",
+    .extensions = ".slc",
+    .open = [](const std::filesystem::path& path, const ReadOptions& options) {
+      return open_slc(file_source(path), options);
+    }};
 
 }  // namespace pellucid

@@ -3,4 +3,5 @@ pellucid_io_sources(
   LATER
     slc.cpp
   LOOPS
-    slc.cpp)
+    slc.cpp
+  VOLUME_FORMATS slc_format)

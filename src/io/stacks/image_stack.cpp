@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image_stack.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <limits>
@@ -26,6 +24,8 @@
 #include "text/json_file.h"
 #include "text/printable.h"
 #include "text/text.h"
+#include "volumes/components.h"
+#include "volumes/volume_format.h"
 
 namespace pellucid {
 
@@ -40,6 +40,20 @@ bool is_tiff(const std::string& name) {
 bool is_image(const std::string& name) {
   return is_tiff(name) || in_small_letters(name).ends_with(".png");
 }
+/// Whether a path is OME-XML beside the files of pages that it describes (".companion.ome").
+bool is_companion(const fs::path& path) {
+  return in_small_letters(path.filename().string()).ends_with(".companion.ome");
+}
+
+/// Whether a path is a pattern of numbered images ("slice%03d.tif") and no file.
+bool is_stack_pattern(const fs::path& path) {
+  std::error_code error;
+  const std::string name = path.filename().string();
+  std::size_t conversions = 0;
+  name_pattern(name, &conversions);
+  return is_image(name) && conversions > 0 && !fs::exists(path, error);
+}
+
 /// Hidden files of a folder are of no stack.
 bool is_shown_image(const std::string& name) {
   return is_image(name) && !name.starts_with('.');
@@ -416,10 +430,6 @@ std::unique_ptr<PageReader> open_pages(const fs::path& file) {
   return is_tiff(file.filename().string()) ? open_tiff(file) : open_png(file);
 }
 
-bool is_companion(const fs::path& path) {
-  return in_small_letters(path.filename().string()).ends_with(".companion.ome");
-}
-
 PageDescription PageReader::describe(const ReadOptions&) const {
   return {};
 }
@@ -428,14 +438,12 @@ void PageReader::share_first_page(std::int64_t) {
   throw Error("the format has one page for each plane");
 }
 
-bool is_stack_pattern(const fs::path& path) {
-  std::error_code error;
-  const std::string name = path.filename().string();
-  std::size_t conversions = 0;
-  name_pattern(name, &conversions);
-  return is_image(name) && conversions > 0 && !fs::exists(path, error);
-}
+namespace {
 
+/// A stack of images (.tif, .tiff, .png): a file of several pages; numbered files, by any of them,
+/// by a pattern or by the folder that holds them and no other images. All are of one size and type,
+/// and their numbers go up in equal steps. Samples are components. Distances are those of the file
+/// where it states a unit, else 1.
 VolumeFile open_stack(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
@@ -479,5 +487,16 @@ VolumeFile open_stack(const fs::path& path, const ReadOptions& options) {
   };
   return file;
 }
+
+}  // namespace
+
+extern const VolumeFormat stack_format{.name = "stack of images",
+                                       .extensions = ".tif .tiff .png .companion.ome",
+                                       .takes_path = is_stack_pattern,
+                                       .takes_other_folders = true,
+                                       .open = open_stack,
+                                       .takes_axes = true,
+                                       .has_times = true,
+                                       .has_series = true};
 
 }  // namespace pellucid

@@ -18,4 +18,5 @@ pellucid_io_sources(
   LOOPS
     page_values.cpp
     png_pages.cpp
-    tiff_pages.cpp)
+    tiff_pages.cpp
+  VOLUME_FORMATS stack_format)

@@ -95,16 +95,4 @@ std::vector<VolumeData> take_components(std::vector<WholeNumbers>& components, s
                                         const std::string& name,
                                         const std::function<void(const std::string&)>& note);
 
-/// Headers of other formats.
-/// The first array of a .npy file, as numpy.load reads it; tells of bytes behind it.
-VolumeFile open_npy(const ByteSource& source, const ReadOptions& options);
-/// The same where nothing may be behind it, as in a .npz file, whose entries have one array each.
-/// `beside` are the other arrays of the archive, which may say positions.
-VolumeFile open_npy_alone(const ByteSource& source, const ReadOptions& options,
-                          std::span<const ArrayBeside> beside = {});
-VolumeFile open_npz(const ByteSource& source, const ReadOptions& options);
-VolumeFile open_raw(const ByteSource& source, const ReadOptions& options);
-VolumeFile open_raw_gzip(const std::filesystem::path& path, const ReadOptions& options);
-VolumeFile open_slc(const ByteSource& source, const ReadOptions& options);
-
 }  // namespace pellucid

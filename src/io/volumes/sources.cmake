@@ -10,10 +10,7 @@ pellucid_io_sources(
   LATER
     unread_formats.cpp
     volume_axes.cpp
-    volume_formats.cpp
     write_volume.cpp
-  INSTEAD
-    first_volume_formats.cpp
   LOOPS
     components.cpp
     stored_numbers.cpp

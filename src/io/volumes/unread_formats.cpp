@@ -4,6 +4,8 @@
 #include <string>
 #include <system_error>
 
+#include "pellucid/io/read_mesh.h"
+#include "pellucid/io/read_volume.h"
 #include "pellucid/scene/error.h"
 #include "text/json_file.h"
 #include "text/text.h"
@@ -51,6 +53,17 @@ void refuse_unread_format(const fs::path& path) {
                 ": is a store of N5, which is not read; copy the array to Zarr, as with "
                 "tensorstore or zarr-python, and give its folder");
   }
+}
+
+void refuse_unknown_format(const fs::path& path) {
+  if (is_mesh_file(path)) {
+    throw Error(path.string() +
+                ": is a mesh, and here a volume is needed; 'render' and 'info' take meshes");
+  }
+  throw Error(path.string() + ": the file's extension is not known; read are " +
+              volume_extensions() +
+              ", .dat headers of Inviwo and Voreen, and headerless data of any name with its "
+              "dimensions and type given");
 }
 
 }  // namespace pellucid

@@ -9,4 +9,7 @@ namespace pellucid {
 /// says what to do: stores of Zarr in a zip archive, stores of N5, files of MINC.
 void refuse_unread_format(const std::filesystem::path& path);
 
+/// Throws Error for a file that no format takes: it is a mesh, or its extension is not known.
+[[noreturn]] void refuse_unknown_format(const std::filesystem::path& path);
+
 }  // namespace pellucid

@@ -3,46 +3,105 @@
 
 #include <algorithm>
 #include <string>
+#include <system_error>
 
 #include "files/input_file.h"
-#include "medical_volumes.h"
 #include "text/text.h"
+#include "unread_formats.h"
 
 namespace pellucid {
 
-const VolumeFormat nifti_format{.open = open_nifti, .is_of_patients = true};
+namespace {
 
-const VolumeFormat npy_format{
-    .open = [](const std::filesystem::path& path,
-               const ReadOptions& options) { return open_npy(file_source(path), options); },
-    .takes_axes = true};
+/// Calls `take` with each extension of a format until it returns true. Returns whether it did.
+template <class Take>
+bool any_extension(const VolumeFormat& format, const Take& take) {
+  std::string_view rest = format.extensions;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find(' '), rest.size());
+    if (take(rest.substr(0, end))) return true;
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return false;
+}
 
-const VolumeFormat raw_format{
-    .open = [](const std::filesystem::path& path,
-               const ReadOptions& options) { return open_raw(file_source(path), options); },
-    .has_header = false};
+/// Returns the first format for which `takes` returns true; null: there is none.
+template <class Takes>
+const VolumeFormat* first_format(const Takes& takes) {
+  const auto formats = volume_formats();
+  const auto found =
+      std::ranges::find_if(formats, [&](const VolumeFormat* format) { return takes(*format); });
+  return found == formats.end() ? nullptr : *found;
+}
 
-const VolumeFormat raw_gzip_format{.open = open_raw_gzip, .has_header = false};
+const VolumeFormat* format_of_folder(const std::filesystem::path& path) {
+  const VolumeFormat* const format = first_format([&](const VolumeFormat& known) {
+    return known.takes_folder != nullptr && known.takes_folder(path);
+  });
+  if (format != nullptr) return format;
+  return first_format([](const VolumeFormat& known) { return known.takes_other_folders; });
+}
+
+const VolumeFormat* format_of_file(const std::filesystem::path& path, const ReadOptions& options) {
+  const VolumeFormat* const by_name = volume_format_by_name(path.filename().string());
+  const VolumeFormat* const by_content = first_format([&](const VolumeFormat& known) {
+    return known.takes_content != nullptr && known.takes_content(path, by_name);
+  });
+  if (by_content != nullptr) return by_content;
+  if (by_name != nullptr && (by_name->refuses == nullptr || !by_name->refuses(path))) {
+    return by_name;
+  }
+  // Whoever says how large the data is and of what type has said that it has no header.
+  if (options.dimensions && options.type) return &raw_format;
+  return first_format([&](const VolumeFormat& known) {
+    return known.takes_unknown_name != nullptr && known.takes_unknown_name(path);
+  });
+}
+
+}  // namespace
 
 const VolumeFormat* volume_format_by_name(std::string_view file_name) {
-  const std::string name = in_small_letters(std::string(file_name));
-  const auto extensions = volume_format_extensions();
-  const auto found = std::ranges::find_if(
-      extensions, [&](const VolumeExtension& known) { return name.ends_with(known.text); });
-  return found == extensions.end() ? nullptr : found->format;
+  const std::string name = in_small_letters(file_name);
+  return first_format([&](const VolumeFormat& known) {
+    return any_extension(known, [&](std::string_view end) { return name.ends_with(end); });
+  });
+}
+
+const VolumeFormat& find_volume_format(const std::filesystem::path& path,
+                                       const ReadOptions& options) {
+  const VolumeFormat* const by_path = first_format([&](const VolumeFormat& known) {
+    return known.takes_path != nullptr && known.takes_path(path);
+  });
+  if (by_path != nullptr) return *by_path;
+  refuse_unread_format(path);
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    if (const VolumeFormat* const format = format_of_folder(path)) return *format;
+    refuse_unknown_format(path);
+  }
+  check_input_file(path);
+  if (const VolumeFormat* const format = format_of_file(path, options)) return *format;
+  refuse_unknown_format(path);
 }
 
 std::string volume_extensions() {
-  std::string known;
-  for (const VolumeExtension& extension : volume_format_extensions()) {
-    known += (known.empty() ? "" : " ") + std::string(extension.text);
+  std::string text;
+  for (const VolumeFormat* const format : volume_formats()) {
+    if (format->extensions.empty()) continue;
+    text += (text.empty() ? "" : " ") + std::string(format->extensions);
   }
-  return known;
+  return text;
 }
 
 bool has_volume_header(std::string_view file_name) {
   const VolumeFormat* const format = volume_format_by_name(file_name);
   return format != nullptr && format->has_header;
+}
+
+bool is_volume_json(const std::filesystem::path& path) {
+  return first_format([&](const VolumeFormat& known) {
+           return known.is_json && known.takes_path != nullptr && known.takes_path(path);
+         }) != nullptr;
 }
 
 }  // namespace pellucid

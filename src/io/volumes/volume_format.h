@@ -7,13 +7,34 @@
 #include <vector>
 
 #include "components.h"
-#include "dicom/dicom_slices.h"
 #include "pellucid/io/read_volume.h"
 
 namespace pellucid {
 
-/// A format of volume files.
+struct DamagedDicomFile;
+
+/// A format of volume files: its name, how its files are told from others, and how they are read.
+/// Each folder of a format defines such objects and names them in its sources.cmake, from which the
+/// table of all formats is made. A pointer that is null says that there is no such function.
 struct VolumeFormat {
+  std::string_view name = {};        ///< for people
+  std::string_view extensions = {};  ///< ends of files' names, in small letters: ".nii .nii.gz"
+
+  // How a path is recognized, in the order in which all formats are asked. Of formats that are
+  // asked at once no two may take the same path.
+  /// Returns whether any path is of this format: a folder, a file, or what is none of both.
+  bool (*takes_path)(const std::filesystem::path& path) = nullptr;
+  /// Returns whether a folder is of this format.
+  bool (*takes_folder)(const std::filesystem::path& path) = nullptr;
+  bool takes_other_folders = false;  ///< that no format takes before
+  /// Returns whether a file is of this format by its content, whatever its name is. `by_name` is
+  /// the format of files of that name; null: there is none.
+  bool (*takes_content)(const std::filesystem::path& path, const VolumeFormat* by_name) = nullptr;
+  /// Returns whether a file that has one of the extensions is of another kind.
+  bool (*refuses)(const std::filesystem::path& path) = nullptr;
+  /// Returns whether a file whose name no format has is of this one.
+  bool (*takes_unknown_name)(const std::filesystem::path& path) = nullptr;
+
   /// Reads a file's header. Throws Error.
   VolumeFile (*open)(const std::filesystem::path& path, const ReadOptions& options);
   /// Lists a file's arrays; null: the format gives them no names. Throws Error.
@@ -29,16 +50,11 @@ struct VolumeFormat {
   bool has_times = false;   ///< whether a step is chosen by its time
   bool has_series = false;  ///< whether one of several series or images is chosen
   bool is_of_patients = false;
+  bool is_json = false;  ///< whether its files are .json, as scenes are
 };
 
-/// A format by the end of a file's name, in small letters.
-struct VolumeExtension {
-  std::string_view text;
-  const VolumeFormat* format;
-};
-
-/// Returns the extensions that this build reads.
-std::span<const VolumeExtension> volume_format_extensions();
+/// Returns all formats of this build. CMake writes the source, from what the folders name.
+std::span<const VolumeFormat* const> volume_formats();
 
 /// Returns the format of files of this name; null: the name tells nothing.
 const VolumeFormat* volume_format_by_name(std::string_view file_name);
@@ -48,7 +64,7 @@ const VolumeFormat* volume_format_by_name(std::string_view file_name);
 const VolumeFormat& find_volume_format(const std::filesystem::path& path,
                                        const ReadOptions& options);
 
-/// Formats that every build reads.
-extern const VolumeFormat nifti_format, npy_format, raw_format, raw_gzip_format;
+/// Headerless data, of any name whose dimensions and type are given.
+extern const VolumeFormat raw_format;
 
 }  // namespace pellucid

@@ -19,4 +19,5 @@ pellucid_io_sources(
     vtk_image_pieces.cpp
     vtk_volume_open.cpp
     vtu_file.cpp
-    write_vti.cpp)
+    write_vti.cpp
+  VOLUME_FORMATS vtk_format image_collection_format vtk_js_format)

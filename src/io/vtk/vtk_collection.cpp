@@ -10,6 +10,7 @@
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "text/xml_scanner.h"
+#include "volumes/volume_format.h"
 #include "vtk_file_kind.h"
 #include "vtk_volume.h"
 
@@ -101,12 +102,13 @@ bool is_image_collection(const fs::path& path) {
   }
 }
 
-VolumeFile open_image_collection(const fs::path& path, const ReadOptions& options) {
-  return open_vtk_volume(only_image(path), options);
-}
-
-std::vector<VolumeArray> list_collection_arrays(const fs::path& path) {
-  return list_vtk_arrays(only_image(path));
-}
+extern const VolumeFormat image_collection_format{
+    .name = "VTK, a list of images",
+    .takes_content = [](const fs::path& path,
+                        const VolumeFormat*) { return is_image_collection(path); },
+    .open = [](const fs::path& path,
+               const ReadOptions& options) { return open_vtk_volume(only_image(path), options); },
+    .list = [](const fs::path& path,
+               const ReadOptions&) { return list_vtk_arrays(only_image(path)); }};
 
 }  // namespace pellucid

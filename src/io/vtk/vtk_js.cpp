@@ -4,8 +4,6 @@
 // the image's extent, origin, spacing and direction, and a list of arrays, each of which names a
 // file of its values by "ref": basepath/id, or that and ".gz".
 
-#include "vtk_js.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,6 +20,8 @@
 #include "text/json_file.h"
 #include "text/printable.h"
 #include "volumes/array_statistics.h"
+#include "volumes/components.h"
+#include "volumes/volume_format.h"
 
 namespace pellucid {
 
@@ -300,8 +300,8 @@ void look_at(const VolumeFile& file, VolumeArray& about) {
   }
 }
 
-}  // namespace
-
+/// Whether a path is a data set of vtk.js (vtkHttpDataSetReader): a folder with an index.json that
+/// has a "vtkClass", or this file.
 bool is_vtk_js(const fs::path& path) {
   std::error_code error;
   const fs::path index = index_of(path);
@@ -314,6 +314,7 @@ bool is_vtk_js(const fs::path& path) {
   }
 }
 
+/// An image: an array of points, or one of cells, which is cell-centred.
 VolumeFile open_vtk_js(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
@@ -345,5 +346,14 @@ std::vector<VolumeArray> list_vtk_js_arrays(const fs::path& path) {
   }
   return list;
 }
+
+}  // namespace
+
+extern const VolumeFormat vtk_js_format{
+    .name = "vtk.js",
+    .takes_path = is_vtk_js,
+    .open = open_vtk_js,
+    .list = [](const fs::path& path, const ReadOptions&) { return list_vtk_js_arrays(path); },
+    .is_json = true};
 
 }  // namespace pellucid

@@ -11,10 +11,13 @@
 
 #include "files/input_file.h"
 #include "files/memory_limit.h"
+#include "pellucid/io/read_mesh.h"
 #include "pellucid/scene/error.h"
 #include "process/contained.h"
 #include "process/contained_values.h"
+#include "volumes/volume_format.h"
 #include "volumes/volume_source.h"
+#include "vtk_file_kind.h"
 #include "vtk_files.h"
 #include "vtk_module.h"
 #include "vtk_volume_answer.h"
@@ -111,5 +114,20 @@ std::vector<VolumeArray> list_vtk_arrays(const std::filesystem::path& path) {
       run_vtk(path, [&](const MakeAnswer& make) { write_arrays(list_here(path), make); });
   return checked(read_arrays(answer), path);
 }
+
+/// Files of whatever name by their first bytes; headerless data may begin with any.
+extern const VolumeFormat vtk_format{
+    .name = "VTK",
+    .extensions = ".vti .pvti .vtr .pvtr .vtk",
+    .takes_content =
+        [](const std::filesystem::path& path, const VolumeFormat* by_name) {
+          const std::optional<VtkFileKind> kind = vtk_file_kind(path);
+          return kind && kind->is_volume() && (by_name == nullptr || by_name->has_header);
+        },
+    .refuses = is_mesh_file,
+    .open = open_vtk_volume,
+    .list = [](const std::filesystem::path& path,
+               const ReadOptions&) { return list_vtk_arrays(path); },
+    .has_times = true};
 
 }  // namespace pellucid

@@ -15,7 +15,8 @@ pellucid_io_sources(
   LOOPS
     zarr_chunks.cpp
     zarr_codecs.cpp
-    zarr_values.cpp)
+    zarr_values.cpp
+  VOLUME_FORMATS zarr_format)
 
 # What chunks of Zarr are compressed with. Without one of them such chunks are refused.
 function(pellucid_chunk_codec option header library package)

@@ -19,6 +19,8 @@
 #include "text/printable.h"
 #include "text/text.h"
 #include "volumes/array_statistics.h"
+#include "volumes/components.h"
+#include "volumes/volume_format.h"
 #include "zarr_axes.h"
 #include "zarr_image.h"
 #include "zarr_store.h"
@@ -151,6 +153,11 @@ bool is_zarr(const fs::path& path) {
   return has_zarr_metadata(path) || in_small_letters(bare.filename().string()).ends_with(".zarr");
 }
 
+namespace {
+
+/// An array of Zarr 2 or 3, or a level of an image of OME-Zarr; of groups with several the named
+/// one, else the first. Axes that OME-Zarr, xarray or version 3 name are what they are named,
+/// others as array_axes() has them. Channels and times are components.
 VolumeFile open_zarr(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
@@ -181,6 +188,8 @@ VolumeFile open_zarr(const fs::path& path, const ReadOptions& options) {
   return file;
 }
 
+/// The arrays and images of a group; none where the path is an array or an image. Of the options
+/// only axes count.
 std::vector<VolumeArray> list_zarr_arrays(const fs::path& path, const ReadOptions& given) {
   const fs::path folder = zarr_folder(path);
   const ZarrNode node = zarr_node_at(folder);
@@ -219,6 +228,8 @@ std::vector<VolumeArray> list_zarr_arrays(const fs::path& path, const ReadOption
   }
   return list;
 }
+
+}  // namespace
 
 std::optional<Pyramid> describe_pyramid(const fs::path& path, const ReadOptions& options) {
   if (!is_zarr(path)) return std::nullopt;
@@ -263,5 +274,14 @@ std::optional<Pyramid> describe_pyramid(const fs::path& path, const ReadOptions&
   }
   return pyramid;
 }
+
+extern const VolumeFormat zarr_format{.name = "Zarr",
+                                      .extensions = ".zarr",
+                                      .takes_path = is_zarr,
+                                      .open = open_zarr,
+                                      .list = list_zarr_arrays,
+                                      .takes_axes = true,
+                                      .has_levels = true,
+                                      .has_times = true};
 
 }  // namespace pellucid

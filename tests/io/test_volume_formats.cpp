@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "pellucid/io/read_volume.h"
+#include "src/io/volumes/volume_format.h"
+
+namespace pellucid::test_volume_formats {
+namespace {
+
+std::vector<std::string> words(std::string_view text) {
+  std::istringstream stream{std::string(text)};
+  std::vector<std::string> list;
+  for (std::string word; stream >> word;) list.push_back(word);
+  return list;
+}
+
+TEST(VolumeFormats, HaveNamesOfTheirOwn) {
+  std::set<std::string_view> names;
+  for (const VolumeFormat* const format : volume_formats()) {
+    EXPECT_FALSE(format->name.empty());
+    EXPECT_TRUE(names.insert(format->name).second) << format->name;
+  }
+}
+
+/// By "a.hdr.gz" no other format is meant than by ".hdr.gz".
+TEST(VolumeFormats, ShareNoExtension) {
+  for (const VolumeFormat* const format : volume_formats()) {
+    for (const std::string& extension : words(format->extensions)) {
+      EXPECT_TRUE(extension.starts_with('.') && extension.size() > 1) << extension;
+      EXPECT_TRUE(std::ranges::none_of(extension, [](char c) { return c >= 'A' && c <= 'Z'; }))
+          << extension;
+      for (const VolumeFormat* const other : volume_formats()) {
+        const auto known = words(other->extensions);
+        EXPECT_EQ(std::ranges::count_if(
+                      known, [&](const std::string& end) { return extension.ends_with(end); }),
+                  other == format ? 1 : 0)
+            << extension << " of " << format->name << " and " << other->name;
+      }
+      EXPECT_EQ(volume_format_by_name("A" + extension), format) << extension;
+    }
+  }
+}
+
+TEST(VolumeFormats, AreRecognizedByNameOrContent) {
+  for (const VolumeFormat* const format : volume_formats()) {
+    EXPECT_TRUE(!format->extensions.empty() || format->takes_path || format->takes_content ||
+                format->takes_unknown_name)
+        << format->name;
+    EXPECT_NE(format->open, nullptr) << format->name;
+    EXPECT_TRUE(!format->is_json || format->takes_path) << format->name;
+  }
+}
+
+TEST(VolumeFormats, AreListedForMessages) {
+  std::size_t listed = words(volume_extensions()).size(), known = 0;
+  for (const VolumeFormat* const format : volume_formats()) {
+    known += words(format->extensions).size();
+  }
+  EXPECT_EQ(listed, known);
+  EXPECT_GT(known, 50u);
+}
+
+/// Only one kind of folder can be what no format takes before.
+TEST(VolumeFormats, TakeOtherFoldersOnce) {
+  EXPECT_EQ(std::ranges::count_if(volume_formats(),
+                                  [](const VolumeFormat* f) { return f->takes_other_folders; }),
+            1);
+}
+
+}  // namespace
+}  // namespace pellucid::test_volume_formats
