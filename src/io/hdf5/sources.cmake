@@ -5,7 +5,8 @@ pellucid_io_sources(
     vtk_hdf.cpp
     vtk_hdf_mesh.cpp
     vtk_hdf_volume.cpp
-  VOLUME_FORMATS hdf5_format vtk_hdf_format)
+  VOLUME_FORMATS hdf5_format vtk_hdf_format
+  MESH_FORMATS vtk_hdf_mesh_format)
 
 include("${CMAKE_CURRENT_SOURCE_DIR}/grid_modules/grid_module.cmake")
 set(hdf5_sources

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "meshes/mesh_blocks.h"
 #include "volumes/components.h"
 
 namespace pellucid {
@@ -88,8 +87,5 @@ class VtkHdfValues {
   std::size_t bytes_ = 0;
   std::shared_ptr<std::byte> all_;
 };
-
-/// UnstructuredGrid, each piece a block.
-MeshBlocks read_vtk_hdf(const std::filesystem::path& path, const MeshReadOptions& options);
 
 }  // namespace pellucid

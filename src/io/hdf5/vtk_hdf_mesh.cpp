@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "meshes/mesh_blocks.h"
+#include "meshes/mesh_format.h"
 #include "pellucid/scene/error.h"
 #include "vtk/vtk_cells.h"
 #include "vtk_hdf.h"
@@ -374,8 +376,7 @@ class Reader {
   std::size_t point_at_ = 0, cell_at_ = 0, corner_at_ = 0, offset_at_ = 0;
 };
 
-}  // namespace
-
+/// Reads an UnstructuredGrid, each piece a block.
 MeshBlocks read_vtk_hdf(const std::filesystem::path& path, const MeshReadOptions& options) {
   const std::string name = path.string();
   const VtkHdfContents contents = vtk_hdf_contents(path, "UnstructuredGrid");
@@ -390,5 +391,15 @@ MeshBlocks read_vtk_hdf(const std::filesystem::path& path, const MeshReadOptions
   }
   return mesh;
 }
+
+}  // namespace
+
+extern const MeshFormat vtk_hdf_mesh_format{
+    .name = "VTKHDF",
+    .extensions = ".vtkhdf",
+    .takes_content = [](const std::filesystem::path& path,
+                        std::string_view) { return vtk_hdf_type(path) == "UnstructuredGrid"; },
+    .content_decides = true,
+    .read = read_vtk_hdf};
 
 }  // namespace pellucid

@@ -4,10 +4,8 @@ pellucid_io_sources(
     load_mesh.cpp
     mesh_archive.cpp
     mesh_blocks.cpp
-    plot3d.cpp
     read_mesh.cpp
     volume_tetrahedra.cpp
   LOOPS
     mesh_blocks.cpp
-    plot3d.cpp
     volume_tetrahedra.cpp)

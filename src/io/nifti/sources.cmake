@@ -11,4 +11,5 @@ pellucid_io_sources(
     nifti.cpp
     write_nifti.cpp
   FIRST_VOLUME_FORMATS nifti_format
-  VOLUME_FORMATS mgh_format)
+  VOLUME_FORMATS mgh_format
+  VOLUME_WRITERS nifti_writer nifti_gzip_writer)

@@ -63,8 +63,6 @@ double moved_by(const std::array<std::array<double, 4>, 3>& rows, const std::arr
   return most;
 }
 
-}  // namespace
-
 Losses write_nifti(const WrittenVolume& volume, const Sink& sink) {
   const Volume::Description& d = volume.description();
   constexpr int most = std::numeric_limits<std::int16_t>::max();
@@ -114,5 +112,12 @@ Losses write_nifti(const WrittenVolume& volume, const Sink& sink) {
   }
   return losses;
 }
+
+}  // namespace
+
+extern const VolumeWriter nifti_writer{.extension = ".nii", .write = write_nifti};
+
+extern const VolumeWriter nifti_gzip_writer{
+    .extension = ".nii.gz", .write = write_nifti, .compressed = true};
 
 }  // namespace pellucid

@@ -10,7 +10,8 @@ pellucid_io_sources(
     write_nrrd.cpp
   LOOPS
     write_nrrd.cpp
-  VOLUME_FORMATS nrrd_format meta_image_format)
+  VOLUME_FORMATS nrrd_format meta_image_format
+  VOLUME_WRITERS nrrd_writer)
 
 if(PELLUCID_WITH_ITK)
   # ITK's package file looks for all that ITK was built with, at length, and asks a C compiler.

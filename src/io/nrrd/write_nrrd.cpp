@@ -17,8 +17,6 @@ const char* type_of(const VolumeData& data) {
   return names[data.index()];
 }
 
-}  // namespace
-
 Losses write_nrrd(const WrittenVolume& volume, const Sink& sink) {
   const Volume::Description& d = volume.description();
   const GridPlacement& placement = d.placement;
@@ -54,5 +52,9 @@ Losses write_nrrd(const WrittenVolume& volume, const Sink& sink) {
   put_interleaved(volume, sink);
   return {};
 }
+
+}  // namespace
+
+extern const VolumeWriter nrrd_writer{.extension = ".nrrd", .write = write_nrrd};
 
 }  // namespace pellucid

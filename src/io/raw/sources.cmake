@@ -6,4 +6,5 @@ pellucid_io_sources(
     write_raw.cpp
   LOOPS
     write_raw.cpp
-  FIRST_VOLUME_FORMATS raw_format raw_gzip_format)
+  FIRST_VOLUME_FORMATS raw_format raw_gzip_format
+  VOLUME_WRITERS raw_writer)

@@ -6,6 +6,8 @@
 
 namespace pellucid {
 
+namespace {
+
 Losses write_raw(const WrittenVolume& volume, const Sink& sink) {
   put_interleaved(volume, sink);
   const Volume::Description& d = volume.description();
@@ -29,5 +31,9 @@ Losses write_raw(const WrittenVolume& volume, const Sink& sink) {
   }
   return losses;
 }
+
+}  // namespace
+
+extern const VolumeWriter raw_writer{.extension = ".raw", .write = write_raw};
 
 }  // namespace pellucid

@@ -33,6 +33,18 @@ inline std::string one_line(std::string text) {
   return text;
 }
 
+/// Calls `take` with each of the words between blanks until it returns true. Returns whether it
+/// did.
+template <class Take>
+bool any_word(std::string_view words, const Take& take) {
+  while (!words.empty()) {
+    const std::size_t end = std::min(words.find(' '), words.size());
+    if (take(words.substr(0, end))) return true;
+    words.remove_prefix(std::min(end + 1, words.size()));
+  }
+  return false;
+}
+
 /// Returns the number that a whole word is, "+" allowed; nothing where it is none.
 template <class Number>
 std::optional<Number> number_of_word(std::string_view word) {

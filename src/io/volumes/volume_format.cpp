@@ -13,18 +13,6 @@ namespace pellucid {
 
 namespace {
 
-/// Calls `take` with each extension of a format until it returns true. Returns whether it did.
-template <class Take>
-bool any_extension(const VolumeFormat& format, const Take& take) {
-  std::string_view rest = format.extensions;
-  while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find(' '), rest.size());
-    if (take(rest.substr(0, end))) return true;
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  return false;
-}
-
 /// Returns the first format for which `takes` returns true; null: there is none.
 template <class Takes>
 const VolumeFormat* first_format(const Takes& takes) {
@@ -63,7 +51,7 @@ const VolumeFormat* format_of_file(const std::filesystem::path& path, const Read
 const VolumeFormat* volume_format_by_name(std::string_view file_name) {
   const std::string name = in_small_letters(file_name);
   return first_format([&](const VolumeFormat& known) {
-    return any_extension(known, [&](std::string_view end) { return name.ends_with(end); });
+    return any_word(known.extensions, [&](std::string_view end) { return name.ends_with(end); });
   });
 }
 

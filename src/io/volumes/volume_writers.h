@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pellucid/scene/volume.h"
@@ -28,10 +29,17 @@ struct WrittenVolume {
 /// Facts that the format does not hold, one line each.
 using Losses = std::vector<std::string>;
 
-Losses write_nrrd(const WrittenVolume& volume, const Sink& sink);
-Losses write_nifti(const WrittenVolume& volume, const Sink& sink);
-Losses write_vti(const WrittenVolume& volume, const Sink& sink);
-Losses write_raw(const WrittenVolume& volume, const Sink& sink);
+/// A format that volumes are written in. Folders of formats define such objects and name them in
+/// their sources.cmake, as of VolumeFormat.
+struct VolumeWriter {
+  std::string_view extension;  ///< the end of files' names, in small letters: ".nii.gz"
+  /// Writes a volume to `sink`. Returns what the format does not hold. Throws Error.
+  Losses (*write)(const WrittenVolume& volume, const Sink& sink);
+  bool compressed = false;  ///< whether gzip compresses what is written
+};
+
+/// Returns all of them. CMake writes the source, from what the folders name.
+std::span<const VolumeWriter* const> volume_writers();
 
 void put_text(const std::string& text, const Sink& sink);
 /// The components of each point side by side.

@@ -10,30 +10,19 @@
 #include "files/gzip_writer.h"
 #include "pellucid/io/atomic_file.h"
 #include "pellucid/scene/error.h"
+#include "text/text.h"
 #include "volume_writers.h"
 
 namespace pellucid {
 
 namespace {
 
-struct Format {
-  std::string_view extension;
-  Losses (*write)(const WrittenVolume&, const Sink&);
-  bool compressed = false;
-};
-
-constexpr std::array formats{Format{".nrrd", write_nrrd}, Format{".nii", write_nifti},
-                             Format{".nii.gz", write_nifti, true}, Format{".vti", write_vti},
-                             Format{".raw", write_raw}};
-
-const Format* format_of(const std::filesystem::path& path) {
-  std::string name = path.filename().string();
-  std::ranges::transform(name, name.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  const auto format = std::ranges::find_if(
-      formats, [&](const Format& known) { return name.ends_with(known.extension); });
-  return format == formats.end() ? nullptr : &*format;
+const VolumeWriter* writer_of(const std::filesystem::path& path) {
+  const std::string name = in_small_letters(path.filename().string());
+  const auto writers = volume_writers();
+  const auto writer = std::ranges::find_if(
+      writers, [&](const VolumeWriter* known) { return name.ends_with(known->extension); });
+  return writer == writers.end() ? nullptr : *writer;
 }
 
 void check(const WrittenVolume& volume) {
@@ -59,13 +48,13 @@ void check(const WrittenVolume& volume) {
 }  // namespace
 
 bool is_writable_volume(const std::filesystem::path& path) {
-  return format_of(path) != nullptr;
+  return writer_of(path) != nullptr;
 }
 
 std::string writable_volume_extensions() {
   std::string known;
-  for (const Format& format : formats) {
-    known += (known.empty() ? "" : " ") + std::string(format.extension);
+  for (const VolumeWriter* const writer : volume_writers()) {
+    known += (known.empty() ? "" : " ") + std::string(writer->extension);
   }
   return known;
 }
@@ -73,8 +62,8 @@ std::string writable_volume_extensions() {
 std::vector<std::string> write_volume(std::span<const Volume> components,
                                       const std::filesystem::path& path, const std::string& array) {
   const WrittenVolume volume{components, array, path.string()};
-  const Format* const format = format_of(path);
-  if (format == nullptr) {
+  const VolumeWriter* const writer = writer_of(path);
+  if (writer == nullptr) {
     throw Error(path.string() + ": not written: a volume is written as one of " +
                 writable_volume_extensions());
   }
@@ -87,12 +76,12 @@ std::vector<std::string> write_volume(std::span<const Volume> components,
     if (!stream) throw Error(path.string() + ": cannot write: is the disk full?");
   };
   Losses losses;
-  if (format->compressed) {
+  if (writer->compressed) {
     GzipWriter gzip(to_file);
-    losses = format->write(volume, [&](std::span<const std::byte> bytes) { gzip.put(bytes); });
+    losses = writer->write(volume, [&](std::span<const std::byte> bytes) { gzip.put(bytes); });
     gzip.finish();
   } else {
-    losses = format->write(volume, to_file);
+    losses = writer->write(volume, to_file);
   }
   stream.close();
   if (!stream) throw Error(path.string() + ": cannot write: is the disk full?");

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 pellucid_io_sources(
   LATER
+    vtk_mesh.cpp
     legacy_vtk_cells.cpp
     legacy_vtk_numbers.cpp
     vtk_cells.cpp
@@ -20,4 +21,6 @@ pellucid_io_sources(
     vtk_volume_open.cpp
     vtu_file.cpp
     write_vti.cpp
-  VOLUME_FORMATS vtk_format image_collection_format vtk_js_format)
+  VOLUME_FORMATS vtk_format image_collection_format vtk_js_format
+  MESH_FORMATS vtk_xml_mesh_format vtk_legacy_mesh_format exodus_format
+  VOLUME_WRITERS vti_writer)

@@ -10,6 +10,8 @@
 
 namespace pellucid {
 
+namespace {
+
 Losses write_vti(const WrittenVolume& volume, const Sink& sink) {
   const Volume::Description& d = volume.description();
   const GridPlacement& placement = d.placement;
@@ -49,5 +51,9 @@ Losses write_vti(const WrittenVolume& volume, const Sink& sink) {
   put_text(std::string(vtk_append_end), sink);
   return {};
 }
+
+}  // namespace
+
+extern const VolumeWriter vti_writer{.extension = ".vti", .write = write_vti};
 
 }  // namespace pellucid

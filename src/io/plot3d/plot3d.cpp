@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plot3d.h"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -13,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "meshes/mesh_blocks.h"
+#include "meshes/mesh_format.h"
 #include "pellucid/scene/error.h"
 #include "volumes/volume_source.h"
 
@@ -297,8 +297,8 @@ void read_solution(const std::filesystem::path& path, const Head& grid, MeshBloc
   }
 }
 
-}  // namespace
-
+/// Reads a PLOT3D grid of three dimensions, and its solution where `q` is not empty. How the
+/// numbers lie in the file is found by its size. Throws Error.
 MeshBlocks read_plot3d(const std::filesystem::path& xyz, const std::filesystem::path& q) {
   Reader file(xyz);
   const Head head = find_head(file);
@@ -312,5 +312,18 @@ MeshBlocks read_plot3d(const std::filesystem::path& xyz, const std::filesystem::
   if (!q.empty()) read_solution(q, head, mesh);
   return mesh;
 }
+
+}  // namespace
+
+extern const MeshFormat plot3d_format{
+    .name = "PLOT3D",
+    .extensions = ".xyz .p3d .x",
+    .read =
+        [](const std::filesystem::path& path, const MeshReadOptions& options) {
+          if (options.time)
+            throw Error(path.string() + ": the file has no steps in time; leave the time out");
+          return read_plot3d(path, options.q);
+        },
+    .takes_solution = true};
 
 }  // namespace pellucid

@@ -7,9 +7,11 @@
 #include <string>
 
 #include "pellucid/io/read_volume.h"
+#include "src/io/meshes/mesh_format.h"
 #include "src/io/volumes/volume_format.h"
+#include "src/io/volumes/volume_writers.h"
 
-namespace pellucid::test_volume_formats {
+namespace pellucid::test_formats {
 namespace {
 
 std::vector<std::string> words(std::string_view text) {
@@ -72,5 +74,38 @@ TEST(VolumeFormats, TakeOtherFoldersOnce) {
             1);
 }
 
+TEST(MeshFormats, HaveNamesAndExtensionsOfTheirOwn) {
+  std::set<std::string> names, extensions;
+  for (const MeshFormat* const format : mesh_formats()) {
+    EXPECT_TRUE(names.insert(std::string(format->name)).second) << format->name;
+    EXPECT_NE(format->read, nullptr) << format->name;
+    EXPECT_FALSE(format->extensions.empty()) << format->name;
+    for (const std::string& extension : words(format->extensions)) {
+      // path::extension() gives one point.
+      EXPECT_EQ(extension.rfind('.'), 0u) << extension;
+      EXPECT_TRUE(extensions.insert(extension).second) << extension;
+    }
+  }
+  EXPECT_EQ(words(mesh_extensions()).size(), extensions.size());
+}
+
+/// PLOT3D alone has the solution in a file of its own, by which the format is known.
+TEST(MeshFormats, TakeASolutionOnce) {
+  EXPECT_EQ(
+      std::ranges::count_if(mesh_formats(), [](const MeshFormat* f) { return f->takes_solution; }),
+      1);
+}
+
+TEST(VolumeWriters, WriteWhatIsRead) {
+  std::set<std::string_view> extensions;
+  for (const VolumeWriter* const writer : volume_writers()) {
+    EXPECT_TRUE(extensions.insert(writer->extension).second) << writer->extension;
+    EXPECT_NE(volume_format_by_name("a" + std::string(writer->extension)), nullptr)
+        << writer->extension;
+    EXPECT_NE(writer->write, nullptr) << writer->extension;
+  }
+  EXPECT_GE(extensions.size(), 5u);
+}
+
 }  // namespace
-}  // namespace pellucid::test_volume_formats
+}  // namespace pellucid::test_formats
