@@ -23,6 +23,13 @@ constexpr const char* ghosts = "vtkGhostType";
 // vtkDataSetAttributes.h, of VTK 9.
 constexpr unsigned duplicate_cell = 1, refined_cell = 8, hidden_cell = 32, hidden_point = 2;
 
+/// What the lists of the faces of polyhedra hold, piece by piece.
+struct Faces {
+  std::vector<std::int64_t> per_piece, points_per_piece, uses_per_piece;
+  std::vector<std::int64_t> points, offsets, uses, cell_offsets;
+  std::size_t point_at = 0, offset_at = 0, use_at = 0, cell_offset_at = 0;
+};
+
 /// The arrays of the cells, and those of values, by their numbers in VtkHdfValues.
 class Reader {
  public:
@@ -87,12 +94,6 @@ class Reader {
                                          "FaceOffsets",
                                          "PolyhedronToFaces",
                                          "PolyhedronOffsets"};
-  /// What they hold, piece by piece.
-  struct Faces {
-    std::vector<std::int64_t> per_piece, points_per_piece, uses_per_piece;
-    std::vector<std::int64_t> points, offsets, uses, cell_offsets;
-    std::size_t point_at = 0, offset_at = 0, use_at = 0, cell_offset_at = 0;
-  };
   /// Those of one piece; its points, faces and lists are counted from 0.
   struct PieceFaces {
     std::span<const std::int64_t> points, offsets, uses, cell_offsets;

@@ -87,8 +87,8 @@ void place(const InviwoHeader& header, const std::string& name, Volume::Descript
 
 /// Returns the values that stored ones stand for.
 VolumeData mapped(const VolumeData& stored, const InviwoHeader& header, const std::string& name) {
-  const auto [from, to] = *header.data_range;
-  const auto [first, last] = *header.value_range;
+  const double from = (*header.data_range)[0], to = (*header.data_range)[1];
+  const double first = (*header.value_range)[0], last = (*header.value_range)[1];
   const double slope = (last - first) / (to - from);
   return std::visit(
       [&](const auto& values) -> VolumeData {

@@ -212,8 +212,8 @@ class Reader {
     compare_across(pages);
     const std::map<double, double>& along = positions_[2];
     if (along.size() < 2) return;
-    const auto [first_z, first] = *along.begin();
-    const auto [last_z, last] = *along.rbegin();
+    const double first_z = along.begin()->first, first = along.begin()->second;
+    const double last_z = along.rbegin()->first, last = along.rbegin()->second;
     const double step = (last - first) / (last_z - first_z);
     // A stage that stays where it is may have its lens moved.
     if (std::ranges::all_of(along, [&](const auto& at) { return at.second == first; })) return;
