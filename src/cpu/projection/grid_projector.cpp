@@ -576,14 +576,20 @@ class GridProjector : public LayerProjector {
   std::vector<float> bounds_;                          ///< of blocks, times sign
 };
 
+/// Has a name because clang 14 defines no virtual members of a class first used in a generic
+/// lambda.
+template <class Value>
+std::unique_ptr<const LayerProjector> make_projector(const ProjectorTask& task,
+                                                     const Volume& volume,
+                                                     const StructuredGrid<Value, double>& grid) {
+  return std::make_unique<GridProjector<Value>>(task, volume, grid);
+}
+
 }  // namespace
 
 std::unique_ptr<const LayerProjector> make_grid_projector(const ProjectorTask& task) {
   const Volume& volume = *std::get<VolumeContent>(task.layer.content).volume;
-  return volume.visit([&]<class Value>(const StructuredGrid<Value, double>& grid)
-                          -> std::unique_ptr<const LayerProjector> {
-    return std::make_unique<GridProjector<Value>>(task, volume, grid);
-  });
+  return volume.visit([&](const auto& grid) { return make_projector(task, volume, grid); });
 }
 
 }  // namespace pellucid
