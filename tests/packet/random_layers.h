@@ -111,6 +111,24 @@ class RandomLayers {
     return TransferFunction(points);
   }
 
+  /// The same channels, of which one has NaN here and there.
+  static std::shared_ptr<const Channels> with_vacuum(const Channels& channels, int which) {
+    std::vector<Channel> result;
+    for (int c = 0; c < channels.count(); ++c) {
+      result.push_back(channels[c]);
+      if (c != which) continue;
+      const Volume& volume = *channels[c].volume;
+      result.back().volume =
+          scenes::make_volume<float>(volume.description(), [&](int i, int j, int k) {
+            const double value = volume.visit([&](const auto& grid) {
+              return static_cast<double>(grid.data[grid.offset(i, j, k)]);
+            });
+            return (5 * i + 3 * j + 7 * k) % 41 == 0 ? std::nan("") : value;
+          });
+    }
+    return std::make_shared<const Channels>(std::move(result));
+  }
+
   /// Gaussians of two variables, tables, or both, on a grid or a mesh; now and then with a factor.
   Layer several_variables() {
     Layer result = scenes::gaussians();
@@ -132,7 +150,9 @@ class RandomLayers {
     const auto function = std::make_shared<const MultivariateTransferFunction>(
         2, std::move(primitives), std::move(tables), std::move(factor));
     if (unit() < 0.7) {
-      std::get<ChannelsContent>(result.content).transfer_function = function;
+      auto& content = std::get<ChannelsContent>(result.content);
+      content.transfer_function = function;
+      if (unit() < 0.4) content.channels = with_vacuum(*content.channels, unit() < 0.5 ? 0 : 1);
       return result;
     }
     const auto pointer = scenes::make_mesh(scenes::box_of_cubes(3));

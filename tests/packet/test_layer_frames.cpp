@@ -157,6 +157,36 @@ TEST(LayerPackets, AreHonestBeyondWhatBinary32Holds) {
   EXPECT_GT(brightest, 0.3);
 }
 
+/// A cell is vacuum where any of its variables is, that of a table or not.
+TEST(LayerPackets, KnowVacuumOfOtherVariables) {
+  if (no_packets()) GTEST_SKIP() << "this machine has none of the instruction sets of packets";
+  const auto description = scenes::grid_description({5, 5, 5}, {-1, -1, -1}, {0.5, 0.5, 0.5});
+  const auto holes = scenes::make_volume<float>(
+      description, [](int i, int j, int k) { return i == 2 && j + k > 3 ? std::nan("") : 0.5; });
+  const auto whole = scenes::make_volume<float>(
+      description, [](int i, int j, int k) { return 0.2 * i + 0.05 * j * k; });
+  const auto channels = std::make_shared<const Channels>(
+      std::vector<Channel>{{"holes", "", holes}, {"whole", "", whole}});
+  const std::vector<ChannelTransferFunction> tables{
+      {1, TransferFunction(scenes::Points{{0, 0.2, {1, 0, 0}}, {1, 2, {0, 1, 0}}})}};
+  Scene scene;
+  scene.layers = {{ChannelsContent{channels, std::make_shared<const MultivariateTransferFunction>(
+                                                 2, std::vector<GaussianPrimitive>{}, tables)}}};
+  scene.layers[0].shading = Shading{};
+  scene.camera.position = {4, 3, 5};
+  scene.camera.focal_point = {0, 0, 0};
+  scene.camera.vertical_angle = 25;
+  scene.size = {12, 12};
+  scene.integration.tolerance = 1e-6;
+  const Image truth = frame(scene, InstructionSet::scalar);
+  scene.integration.tolerance = 2e-3;
+  for (const InstructionSet set : packet_sets) {
+    if (!test::runs_here(set)) continue;
+    SCOPED_TRACE(name_of(set));
+    expect_within_errors(frame(scene, set), truth, 1e-7);
+  }
+}
+
 /// Light so bright that binary32 has too few digits for it, or almost: rays that spend too much go
 /// the general way, and are as good as there.
 TEST(LayerPackets, LeaveRaysThatSpendTooMuchToTheGeneralPath) {

@@ -400,6 +400,8 @@ class ChannelsSource : public LayerSource {
       in_cells_ = in_cells_ && fits_single(*channels_[c].volume) &&
                   suits_lanes(*channels_[c].volume, most_extinction());
     }
+    // A cell is vacuum where any channel is, which lanes do not see that load a table's alone.
+    in_cells_ = in_cells_ && (functions_[0].tables == 0 || !has_vacuum());
     // Which Gaussians matter differs from block to block.
     in_runs_ = in_cells_ && functions_[0].gaussians.count == 0 && blocks_.left_out == 0 &&
                fits_walks(grid_.axis);
@@ -428,6 +430,13 @@ class ChannelsSource : public LayerSource {
   bool in_runs() const { return in_runs_; }
 
  private:
+  bool has_vacuum() const {
+    for (int c = 0; c < channels_.count(); ++c) {
+      if (channels_[c].volume->statistics().nan > 0) return true;
+    }
+    return false;
+  }
+
   const Channels& channels_;
   MultichannelGrid grid_;
   MultivariateBlocksStorage storage_;
