@@ -72,7 +72,8 @@ class MultivariateRayIntegrator {
   PELLUCID_HD void add_stretch(const Span& span, Interval<double> range, PrimitiveSet primitives,
                                double left_out, double position_error) noexcept {
     demand_.primitives = primitives;
-    add_panels(SpanPanels<Span>{*transfer_, span}, range, left_out, position_error);
+    add_panels(SpanPanels<Span>{*transfer_, span, most_span_panels()}, range, left_out,
+               position_error);
   }
 
   /// The same for any stretch. It has a length() in world units, panel(begin, end, demand,
@@ -178,16 +179,22 @@ class MultivariateRayIntegrator {
                                    demand_.largest_color);
   }
 
+  /// Returns after how many panels without light a ray gives up its tolerance: rounding alone may
+  /// take more than the budget has, of data and colors near the ends of numbers. That takes some
+  /// 0.1 s. Tolerances that no picture has are not given up.
+  PELLUCID_HD long most_span_panels() const noexcept {
+    return tolerance_ < 1e-8 ? std::numeric_limits<long>::max() : 1 << 16;
+  }
+
   /// Panels of several variables along a span.
   template <class Span>
   struct SpanPanels {
     const MultivariateTransfer<double>& transfer;
     const Span& span;
+    long most;
 
     PELLUCID_HD double length() const noexcept { return span.length; }
-    /// Rounding alone may take more than the budget has, of data and colors near the ends of
-    /// numbers; a ray takes some 0.1 s until that is given up.
-    PELLUCID_HD static long most_panels() noexcept { return 1 << 16; }
+    PELLUCID_HD long most_panels() const noexcept { return most; }
     template <class Allowance>
     PELLUCID_HD PELLUCID_DEVICE_CALL PanelSegment<double> panel(
         double begin, double end, const PanelDemand<double>& demand,
