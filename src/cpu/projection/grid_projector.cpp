@@ -576,8 +576,8 @@ class GridProjector : public LayerProjector {
   std::vector<float> bounds_;                          ///< of blocks, times sign
 };
 
-/// Has a name because clang 14 defines no virtual members of a class first used in a generic
-/// lambda.
+/// Gives the lambda below its result. With a result that the lambda names (->), clang 14 leaves the
+/// virtual members of GridProjector undefined.
 template <class Value>
 std::unique_ptr<const LayerProjector> make_projector(const ProjectorTask& task,
                                                      const Volume& volume,
