@@ -9,16 +9,22 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// Returns the world length until rays leave cells along an axis, all of it in the block; infinite
-/// where the cell is the last one on the way.
+/// Returns how far it is, world length, from a place to where rays leave cells along an axis, by a
+/// plane at `plane`; infinite where the cell is the last one on the way.
+template <int N>
+Batch<double, N> plane_exit(Batch<double, N> plane, BatchMask<N> is_last, Batch<double, N> place,
+                            Batch<double, N> inverse) noexcept {
+  using D = Batch<double, N>;
+  return select(is_last, D(std::numeric_limits<double>::infinity()), (plane - place) * inverse);
+}
+
+/// Returns the same of planes at whole numbers, all of it in the block.
 template <int N>
 Batch<double, N> cell_exit(Batch<float, N> cell, Batch<float, N> end_cell, Batch<double, N> place,
                            Batch<double, N> inverse, BatchMask<N> forward) noexcept {
   using F = Batch<float, N>;
-  using D = Batch<double, N>;
-  const D plane = convert<double>(cell + select(forward, F(1), F(0)));
-  return select(cell == end_cell, D(std::numeric_limits<double>::infinity()),
-                (plane - place) * inverse);
+  return plane_exit(convert<double>(cell + select(forward, F(1), F(0))), cell == end_cell, place,
+                    inverse);
 }
 
 /// Returns the world length until rays enter cells along an axis.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
-
 #include "pellucid/packet/cells/cell_march.h"
 #include "pellucid/packet/layered_interface.h"
 #include "pellucid/packet/layers/cell_loads.h"
@@ -48,8 +46,7 @@ class CellWalk {
   D exit() noexcept {
     for (int a = 0; a < 3; ++a) {
       const D plane = plane_at(a, cell_[a] + select(forward_[a], F(1), F(0)));
-      exit_[a] = select(cell_[a] == end_cell_[a], D(std::numeric_limits<double>::infinity()),
-                        (plane - origin_[a]) * inverse_[a]);
+      exit_[a] = plane_exit(plane, cell_[a] == end_cell_[a], origin_[a], inverse_[a]);
     }
     return min(min(exit_[0], exit_[1]), exit_[2]);
   }

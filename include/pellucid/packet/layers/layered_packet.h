@@ -4,10 +4,7 @@
 #include "pellucid/error/random_errors.h"
 #include "pellucid/packet/cells/span_light.h"
 #include "pellucid/packet/layered_interface.h"
-#include "pellucid/packet/layers/cell_loads.h"
-#include "pellucid/packet/layers/cell_walk.h"
-#include "pellucid/packet/layers/lane_mixture.h"
-#include "pellucid/packet/layers/lane_transfers.h"
+#include "pellucid/packet/layers/lane_layer.h"
 #include "pellucid/packet/layers/piece_sum.h"
 #include "pellucid/packet/opacity_trace.h"
 #include "pellucid/packet/packet_fold.h"
@@ -38,16 +35,16 @@ class LayeredPacket {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
   using Row = PellucidLayerRow;
+  using Layer = LaneLayer<N>;
 
   explicit LayeredPacket(const PellucidLayeredJob& job) noexcept
       : layers_(job.layers),
+        to_eye_{loaded(job.to_eye[0]), loaded(job.to_eye[1]), loaded(job.to_eye[2])},
         largest_color_(static_cast<float>(job.largest_color)),
         fold_(loaded(job.tolerance), job.largest_extinction, job.largest_color, loaded(job.length)),
         trace_(job.depth != 0) {
-    const Vec3<F> to_eye{loaded(job.to_eye[0]), loaded(job.to_eye[1]), loaded(job.to_eye[2])};
-    for (int a = 0; a < 3; ++a) to_eye_[a] = to_eye[a];
     for (int k = 0; k < layers_; ++k) {
-      new (&layer_[k]) Layer(job, k, to_eye);
+      new (&layer_[k]) Layer(job, k, to_eye_);
     }
     alive_ = M::from_bits((1u << job.count) - 1u);
   }
@@ -99,44 +96,6 @@ class LayeredPacket {
   /// pieces.
   static constexpr float narrowest = 1.0f / 512;
   static constexpr int most_pieces = 40;
-
-  /// A layer on the lanes' rows.
-  struct Layer {
-    M present{false};
-    LaneTransfers<N> transfers;
-    SpanLanes<float, N> span;
-    SpanPiece<float, N> piece;
-    const LaneMixture* mixture;  ///< null: one variable
-    MixtureLanes<N> gaussians;
-    bool has_light;
-    SpanLight<N> light;
-    LightOfPiece<N> lit;
-    bool has_cells;
-    union {
-      CellLoads<N> cells;
-    };
-    M runs{false};  ///< lanes whose parts are runs of cells
-    CellWalk<N> walk;
-    typename CellLoads<N>::Ways way;  ///< through cells
-
-    Layer(const PellucidLayeredJob& job, int number, const Vec3<F>& to_eye) noexcept
-        : transfers(job.functions),
-          mixture(seen(job.mixture[number])),
-          has_light(seen(job.light[number]) != nullptr),
-          light(has_light ? *seen(job.light[number]) : no_light(), to_eye),
-          has_cells(job.grid[number] != nullptr) {
-      transfers.largest_color = static_cast<float>(job.largest_color);
-      if (has_cells) {
-        new (&cells) CellLoads<N>(job.grid[number], job.lit_grid[number],
-                                  has_light ? *seen(job.light[number]) : no_light());
-        walk.take(job.walk[number], PacketGrid(job.grid[number][0]).cells);
-      }
-    }
-  };
-  static const PacketLight& no_light() noexcept {
-    static constexpr PacketLight none{};
-    return none;
-  }
 
   template <class T>
   static Batch<T, N> loaded(const T (&of_lane)[Row::most_lanes]) noexcept {
@@ -217,7 +176,7 @@ class LayeredPacket {
   void begin_step(M lanes) noexcept {
     const M stepping = lanes & row_.has_runs;
     M empty(false);
-    F entry[3] = {row_.entry[0], row_.entry[1], row_.entry[2]};
+    Vec3<F> entry = row_.entry;
     if (any(stepping)) {
       const D begin = row_.reached;
       D end = row_.end;
@@ -252,7 +211,7 @@ class LayeredPacket {
     }
     lanes = lanes & !empty;
     rows_ += select(lanes, I(1), I(0));
-    if (any(lanes)) begin(lanes, stepping, {entry[0], entry[1], entry[2]});
+    if (any(lanes)) begin(lanes, stepping, entry);
   }
 
   /// Begins steps; `partial`: those that may be less than their rows.
@@ -260,157 +219,24 @@ class LayeredPacket {
     pending_ = pending_ | lanes;
     cap_ = select(lanes, F(1), cap_);
     tried_ = select(lanes, I(0), tried_);
-    const I at = select(lanes, row_.at, I(0));
-    M waits(false);
+    const LaneStep<N> step{select(lanes, row_.at, I(0)), partial, convert<float>(step_begin_),
+                           convert<float>(step_end_),    entry,   length_};
+    M waits(false), absent = lanes;
     for (int k = 0; k < layers_; ++k) {
       Layer& layer = layer_[k];
       const M here = lanes & ((row_.present & I(1 << k)) != I(0));
       layer.present = (layer.present & !lanes) | here;
-      if (none(here)) continue;
-      const float* const parts = parts_of(k);
-      const M in_run = here & layer.runs;
-      F part[Row::part_fields];
-      if (layer.has_light && !layer.has_cells) {
-        load_records<Row::part_fields>(parts, at, part);
-      } else if (all(in_run | !here)) {
-        load_fields<Row::run_fields>(parts, at, part);
-      } else {
-        load_fields<Row::cell_fields>(parts, at, part);
-      }
-      M shown = here;
-      CubicBernstein<F> gradient[3], magnitude;
-      const M in_cell = layer.has_cells ? here & (part[Row::part_kind] == F(Row::cell)) : M(false);
-      const M in_cells = in_cell | in_run;
-      const M cut = here & partial & !in_run;
-      const F from = convert<float>(step_begin_), to = convert<float>(step_end_);
-      typename CellLoads<N>::Ways& ways = layer.way;
-      if (any(in_cells)) {
-        if (any(in_cell)) {
-          for (int a = 0; a < 3; ++a) {
-            const F begin = part[Row::entry_in_cell + a], end = part[Row::exit_in_cell + a];
-            const F way = end - begin;
-            ways.cell[a] =
-                select(in_cell, convert<std::int32_t>(part[Row::place + a]), ways.cell[a]);
-            ways.entry[a] = select(in_cell, select(cut, begin + from * way, begin), ways.entry[a]);
-            ways.exit[a] = select(in_cell, select(cut, begin + to * way, end), ways.exit[a]);
-          }
-        }
-        shown = (layer.mixture != nullptr ? load_mixture(layer, in_cells, ways)
-                                          : load_cells(layer, in_cells, ways, part, waits)) |
-                (here & !in_cells);
-        layer.present = layer.present & !(here & !shown);
-        if (none(shown)) continue;
-      }
-      const M curves = shown & !in_cells, cut_curves = curves & cut;
-      if (layer.mixture != nullptr) {
-        begin_mixture(k, shown, curves, at);
-        if (any(cut_curves)) {
-          for (int c = 0; c < layer.mixture->channels; ++c) {
-            restrict(cut_curves, from, to, layer.gaussians.data[c]);
-          }
-        }
-      } else {
-        if (any(cut_curves)) {
-          CubicBernstein<F> data{part[Row::data], part[Row::data + 1], part[Row::data + 2],
-                                 part[Row::data + 3]};
-          restrict(cut_curves & (part[Row::part_kind] == F(Row::curve)), from, to, data);
-          for (int b = 0; b < 4; ++b) part[Row::data + b] = data.b[b];
-        }
-        begin(shown, part, layer);
-      }
-      if (!layer.has_light) continue;
-      if (any(here & !in_cells)) {
-        if (layer.has_cells) load_records<Row::part_fields>(parts, at, part);
-        for (int b = 0; b < 4; ++b) {
-          for (int c = 0; c < 3; ++c) gradient[c].b[b] = part[Row::gradient + 4 * c + b];
-          magnitude.b[b] = part[Row::magnitude + b];
-        }
-        if (any(cut_curves)) {
-          for (CubicBernstein<F>& g : gradient) restrict(cut_curves, from, to, g);
-          restrict(cut_curves, from, to, magnitude);
-        }
-      }
-      const M lit = shown & in_cells;
-      if (any(lit)) layer.cells.gradients(lit, ways, gradient, magnitude);
-      waits = waits | layer.light.begin(shown, gradient, magnitude, entry, length_);
+      if (any(here)) layer.begin(here, step, parts_of(k), job_->curves[k], waits);
+      absent = absent & !layer.present;
     }
-    M absent = lanes & !waits;
-    for (int k = 0; k < layers_; ++k) absent = absent & !layer_[k].present;
+    absent = absent & !waits;
     if (any(absent)) leave_out(absent);
     if (any(waits)) wait_for_caller(waits & lanes);
   }
 
-  /// Restricts a cubic of these lanes to the share [from, to].
-  static void restrict(M lanes, F from, F to, CubicBernstein<F>& f) noexcept {
-    const CubicBernstein<F> there = restrict_to(f, from, to);
-    for (int b = 0; b < 4; ++b) f.b[b] = select(lanes, there.b[b], f.b[b]);
-  }
-
-  /// The parts of a layer's rows.
+  /// Returns the parts of a layer's rows.
   const float* parts_of(int layer) const noexcept {
     return job_->part + layer * Row::most_lanes * Row::of_a_ray * Row::part_fields;
-  }
-
-  /// Loads data of cells into their parts. Returns the lanes in which they may absorb; adds those
-  /// that are not for lanes to `waits`.
-  [[gnu::noinline]] M load_cells(Layer& layer, M lanes, const typename CellLoads<N>::Ways& ways,
-                                 F* part, M& waits) const noexcept {
-    const CellCubic<F> cubic = layer.cells.data(lanes, ways);
-    const CubicBernstein<F>& data = cubic.data;
-    const F rounding = cubic.rounding;
-    const M filled = lanes & !is_nan(data.b[0] + data.b[3]);
-    for (int b = 0; b < 4; ++b) {
-      part[Row::data + b] = select(lanes, select(filled, data.b[b], F(0)), part[Row::data + b]);
-    }
-    part[Row::rounding] = select(lanes, rounding, part[Row::rounding]);
-    const F least = data.hull_min() - rounding, most = data.hull_max() + rounding;
-    M found(false);
-    layer.transfers.begin(lanes, convert<std::int32_t>(part[Row::function]), M(false));
-    layer.transfers.for_each(filled, [&](const BinnedTransfer& transfer, M same) noexcept {
-      M jumps;
-      const M absorbs = may_absorb(transfer, same, least, most, jumps);
-      found = found | absorbs;
-      waits = waits | jumps | (absorbs & !(F(2) * rounding < F(transfer.narrowest)));
-    });
-    return found;
-  }
-
-  /// Loads the data of cells in a layer of several variables. Returns the lanes that have any.
-  [[gnu::noinline]] M load_mixture(Layer& layer, M lanes,
-                                   const typename CellLoads<N>::Ways& ways) const noexcept {
-    MixtureLanes<N>& to = layer.gaussians;
-    M filled = lanes;
-    for (int c = 0; c < layer.mixture->channels; ++c) {
-      const CellCubic<F> cubic = layer.cells.data(lanes, ways, c);
-      filled = filled & !is_nan(cubic.data.b[0] + cubic.data.b[3]);
-      for (int b = 0; b < 4; ++b) {
-        to.data[c].b[b] = select(lanes, cubic.data.b[b], to.data[c].b[b]);
-      }
-      to.rounding[c] = select(lanes, cubic.rounding, to.rounding[c]);
-    }
-    return filled;
-  }
-
-  /// Begins a layer of several variables; `curves`: the lanes whose parts are no cells.
-  [[gnu::noinline]] void begin_mixture(int number, M lanes, M curves, I at) noexcept {
-    Layer& layer = layer_[number];
-    MixtureLanes<N>& to = layer.gaussians;
-    // Bits in the place of floats, in records of four.
-    const auto* const words = reinterpret_cast<const std::int32_t*>(parts_of(number));
-    const I field = select(curves, I(Row::primitives_of_curve), I(Row::primitives_of_cell));
-    const I word = at * I(Row::part_fields) + field;
-    to.set.low = select(lanes, gather(words, word), to.set.low);
-    to.set.high = select(lanes, gather(words, word + I(1)), to.set.high);
-    if (none(curves)) return;
-    const int variables = layer.mixture->channels;
-    const I first = at * I(Row::curve_fields(variables) / 4);
-    for (int c = 0; c < variables; ++c) {
-      F b[4], off[4];
-      load_records<4>(job_->curves[number], first + I(c), b);
-      load_records<4>(job_->curves[number], first + I(variables + c / 4), off);
-      for (int k = 0; k < 4; ++k) to.data[c].b[k] = select(curves, b[k], to.data[c].b[k]);
-      to.rounding[c] = select(curves, off[c % 4], to.rounding[c]);
-    }
   }
 
   /// Nothing of the lanes' rows absorbs after all.
@@ -419,44 +245,6 @@ class LayeredPacket {
     const F error = largest_color_ * min(left_out_ * length_, F(1));
     fold_.budget.spend(select(lanes, length_, F(0)), F(0), fold_.transparency(),
                        select(lanes, error * F(1 + 8 * rounding_unit<float>), F(0)));
-  }
-
-  /// The first fields of parts.
-  template <int Fields>
-  static void load_fields(const float* parts, I at, F* part) noexcept {
-    static_assert(Fields % 4 == 0 && Row::part_fields % 4 == 0);
-    // Records of four floats.
-    const I first = at * I(Row::part_fields / 4);
-    for (int f = 0; f < Fields; f += 4) load_records<4>(parts, first + I(f / 4), part + f);
-  }
-
-  /// Begins a layer's span.
-  void begin(M lanes, const F* part, Layer& layer) noexcept {
-    SpanLanes<float, N>& span = layer.span;
-    const M constant = lanes & (part[Row::part_kind] == F(Row::constant));
-    for (int b = 0; b < 4; ++b) {
-      span.data.b[b] = select(lanes, select(constant, F(0), part[Row::data + b]), span.data.b[b]);
-    }
-    span.rounding = select(lanes, part[Row::rounding], span.rounding);
-    span.length = select(lanes, length_, span.length);
-    span.from = select(lanes, F(0), span.from);
-    span.begin(lanes);
-    layer.transfers.begin(lanes, convert<std::int32_t>(part[Row::function]), constant);
-    // What was known is of another function.
-    const F far(BinnedTransfer::far), nothing(0);
-    const M changing = lanes & !constant;
-    span.extinction.lower = select(changing, far, span.extinction.lower);
-    span.extinction.upper = select(changing, -far, span.extinction.upper);
-    span.color.lower = select(changing, far, span.color.lower);
-    span.color.upper = select(changing, -far, span.color.upper);
-    if (none(constant)) return;
-    const F extinction = part[Row::data];
-    const ExtinctionInterval<F> of_material{-far,       far,     extinction, nothing,
-                                            extinction, nothing, nothing,    nothing};
-    span.extinction = select(constant, of_material, span.extinction);
-    const Rgb<F> color{part[Row::data + 1], part[Row::data + 2], part[Row::data + 3]};
-    span.color = select(constant, ColorInterval<F>{-far, far, color, {nothing, nothing, nothing}},
-                        span.color);
   }
 
   /// Meets what has no length, or is not seen.
@@ -714,7 +502,7 @@ class LayeredPacket {
         Layer& layer = layer_[k];
         const M here = lanes & layer.present;
         if (none(here)) continue;
-        const Material<F> own = material(layer, here, u);
+        const Material<F> own = layer.material(here, u);
         const F absorbs = select(here, own.extinction, F(0));
         extinction += absorbs;
         source.r += select(here, absorbs * own.color.r, F(0));
@@ -726,25 +514,6 @@ class LayeredPacket {
       return Material<F>{select(shines, extinction, F(0)), weight * source};
     });
   }
-  static Material<F> material(Layer& layer, M here, F u) noexcept {
-    if (layer.mixture != nullptr) {
-      Material<F> found = layer.gaussians.material(*layer.mixture, here, u);
-      if (layer.has_light) found.color = layer.light.lit_at(layer.lit, u).apply(found.color);
-      return found;
-    }
-    if (layer.has_light) {
-      return layer.light.material(layer.lit, layer.piece, layer.span, u, here, layer.transfers,
-                                  layer.span.color);
-    }
-    const SpanPiece<float, N>& piece = layer.piece;
-    const ExtinctionInterval<F>& interval = layer.span.extinction;
-    const F value = evaluate(piece.parts.front, u);
-    const F extinction = interval.at_lower + interval.slope * (value - interval.lower);
-    return {max(extinction, F(0)),
-            color_at(layer.transfers, clamp(value, piece.seen.color_lower, piece.seen.color_upper),
-                     here, layer.span.color)};
-  }
-
   /// The lanes' pieces were taken; where one was halved, its other half comes next.
   void go_past(M take, F place, F to) noexcept {
     for (int k = 0; k < layers_; ++k) {
@@ -815,16 +584,18 @@ class LayeredPacket {
   }
 
   int layers_;
+  Vec3<F> to_eye_;
   F largest_color_;
   PellucidLayeredJob* job_ = nullptr;
   union {
     Layer layer_[Row::most_layers];
   };
 
-  /// What lanes know of rows that they take in steps.
+  /// Rows that lanes take in steps.
   struct Rows {
     I at{0}, present{0};
-    F entry[3], left{0}, length{0};
+    Vec3<F> entry{F(0), F(0), F(0)};
+    F left{0};
     M has_runs{false};  ///< of cells: such a row goes on behind `reached`
     D begin{0}, end{1}, reached{0};
   };
@@ -835,7 +606,6 @@ class LayeredPacket {
   M in_row_{false};   ///< lanes whose rows have more steps
   I next_{0}, end_{0};
   Rows row_;
-  F to_eye_[3];
 
   // Of the lanes' steps.
   D step_begin_{0}, step_end_{1};  ///< of their rows
