@@ -9,6 +9,7 @@
 
 #include "grid/grid_light.h"
 #include "layer_merge.h"
+#include "packet_setup.h"
 
 namespace pellucid {
 namespace {
@@ -82,7 +83,132 @@ bool write_curves(int variables, const LayerStretch& stretch, Interval<double> r
   return true;
 }
 
+/// Returns the largest magnitude of the values of a table's points.
+double largest_of(const PiecewiseLinear<double>& table) {
+  return std::max(std::fabs(table.value[0]), std::fabs(table.value[table.count - 1]));
+}
+
+/// Returns whether lanes are for a table: numbers whose squares binary32 has.
+bool suits_lanes(const PiecewiseLinear<double>& table) {
+  const double largest = largest_of(table);
+  return largest == 0 || is_moderate(largest);
+}
+
+/// Returns whether binary32 knows the places of Gaussians, K (v - c).
+bool suits_lanes(const GaussianMixture<double>& gaussians) {
+  const auto suits = [](double x) { return has_moderate_square(std::fabs(x)); };
+  for (int i = 0; i < gaussians.count; ++i) {
+    const Gaussian<double>& g = gaussians.primitive[i];
+    for (int c = 0; c < g.channels; ++c) {
+      if (!suits(g.center[c])) return false;
+      for (int row = 0; row < g.rows; ++row) {
+        if (!suits(g.matrix[row][c])) return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// The factor of a layer's extinction: the largest one, and the largest argument.
+struct FactorRange {
+  double largest = 0, steepest = 0;
+};
+
+/// None: nobody knows how large the argument is.
+std::optional<FactorRange> factor_range(const LayerLook& look) {
+  const Layer& layer = look.layer();
+  const auto* const channels = std::get_if<ChannelsContent>(&layer.content);
+  if (const ChannelTransferFunction* const factor = look.value_factor()) {
+    if (channels == nullptr) return std::nullopt;
+    const VolumeStatistics& data = (*channels->channels)[factor->channel].volume->statistics();
+    return FactorRange{channels->transfer_function->largest_factor(),
+                       std::max(std::fabs(look.factor_argument(data.minimum)),
+                                std::fabs(look.factor_argument(data.maximum)))};
+  }
+  const Volume* volume = nullptr;
+  if (const auto* const content = std::get_if<VolumeContent>(&layer.content)) {
+    volume = content->volume.get();
+  } else if (channels != nullptr) {
+    volume = (*channels->channels)[layer.gradient_opacity->channel()].volume.get();
+  }
+  if (volume == nullptr) return std::nullopt;
+  return FactorRange{layer.gradient_opacity->largest_factor(), steepest_gradient(look, *volume)};
+}
+
+/// Returns the variable whose gradient lights a layer.
+int lit_variable(const LayerLook& look) {
+  return look.layer().shading ? look.layer().shading->channel : 0;
+}
+
 }  // namespace
+
+bool prepare(SeenLayer& one, const PacketLight& lights,
+             std::deque<BinnedTransferStorage>& functions) {
+  const LayerSource& source = *one.source;
+  const LayerLook& look = source.look();
+  one.first_function = static_cast<int>(functions.size());
+  const bool suits =
+      one.mixture
+          ? suits_lanes(source.functions()[0].gaussians)
+          : std::ranges::all_of(one.table, [](const auto* table) { return suits_lanes(*table); });
+  if (!suits || source.most_extinction() > 1e12) return false;
+  const Volume* const lit_cells = source.cells(lit_variable(look));
+  const Reflection<double>* const r = look.reflection();
+  if (r != nullptr) {
+    // Where a light turns its edge to the direction half-way to a point light is no place that
+    // packets know.
+    if (!has_moderate_square(std::sqrt(r->flat_square)) ||
+        (lit_cells != nullptr && !has_moderate_square(steepest_gradient(look, *lit_cells))) ||
+        !has_moderate_square(static_cast<double>(lights.farthest)) ||
+        (lights.points > 0 && has_kink_in_highlight(in_single(*r)))) {
+      return false;
+    }
+  }
+  std::optional<FactorRange> factor;
+  if (look.extinction_factor() != nullptr) {
+    factor = factor_range(look);
+    if (one.mixture || !factor ||
+        !suits_single(*look.extinction_factor(), factor->largest, factor->steepest)) {
+      return false;
+    }
+  }
+  for (const PiecewiseLinear<double>* const table : one.table) {
+    functions.emplace_back(*table, largest_of(*table));
+    one.function.push_back(&functions.back().view());
+  }
+  if (source.cells() != nullptr) {
+    const auto add_grid = [&](int variable) {
+      if (variable == lit_variable(look)) one.lit_grid = static_cast<int>(one.grid.size());
+      set_grid(*source.cells(variable), one.grid.emplace_back());
+    };
+    if (one.mixture) {
+      for (int c = 0; c < one.mixture->channels; ++c) add_grid(c);
+    } else {
+      add_grid(one.variable);
+      if (look.is_lit() && one.variable != lit_variable(look)) add_grid(lit_variable(look));
+    }
+  }
+  if (!one.grid.empty() && !is_uniform(*source.cells())) {
+    source.cells()->visit([&](const auto& grid) {
+      for (int a = 0; a < 3; ++a) {
+        for (int i = 0; i <= grid.axis[a].cells(); ++i) {
+          one.plane[a].push_back(grid.axis[a].plane(i));
+        }
+      }
+    });
+  }
+  if (!look.is_lit()) return true;
+  PacketLight& light = one.light.emplace(r != nullptr ? lights : no_light());
+  if (r != nullptr) light.reflection = in_single(*r);
+  if (lit_cells != nullptr) {
+    light.of_field = r != nullptr && look.layer().shading->gradient == GradientKind::field ? 1 : 0;
+    set_world_gradient(*lit_cells, light);
+  }
+  if (factor) {
+    set_factor(*look.extinction_factor(), factor->largest, factor->steepest, one.factor, light);
+  }
+  return true;
+}
 
 float single_above(double x) {
   return static_cast<float>(x) * (1 + 2 * unit);

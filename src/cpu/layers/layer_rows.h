@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -26,13 +27,19 @@ struct SeenLayer {
   std::optional<BinnedTransferStorage> factor;
   std::optional<PacketLight> light;
   std::vector<const BinnedTransfer*> function;  ///< each of its functions
-  /// Of the cells that its stretches tell: its variables, and that which lights it (lit_grid).
+  /// Grids of the cells that its stretches tell: of its variables, and of that which lights it
+  /// (lit_grid).
   std::vector<PellucidPacketJob> grid;
   int lit_grid = 0;
   std::vector<double> plane[3];  ///< of that grid; empty: uniform
   std::vector<Gaussian<float>> gaussians;
   std::optional<LaneMixture> mixture;  ///< of these; none: tables
 };
+
+/// Completes a layer whose source, variable, and table or mixture are set. Its functions become
+/// some of `functions`. Returns whether packets are for it.
+bool prepare(SeenLayer& one, const PacketLight& lights,
+             std::deque<BinnedTransferStorage>& functions);
 
 /// Returns a bound on x >= 0 in binary32.
 float single_above(double x);

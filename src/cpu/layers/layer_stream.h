@@ -22,8 +22,8 @@ struct LayerStretch : FieldStretch {
   double left_out = 0;      ///< upper bound on the extinction of what is ignored here
   double unknown = 0;       ///< upper bound on an opacity in front of it that is not known
 
-  /// What is told: data and gradients; of cells(), `cell` alone, which holds the stretch, or that
-  /// it is a run of cells which are to be found.
+  /// The kind of what is told: data and gradients; of cells(), `cell` alone, which holds the
+  /// stretch; or that it is a run of cells, which are to be found.
   enum class Kind { curves, cell, run };
   Kind kind = Kind::curves;
   StructuredWalk<double>::Step cell{};

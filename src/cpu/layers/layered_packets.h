@@ -18,9 +18,9 @@
 namespace pellucid {
 
 /// Follows rays through several layers in packets (packet/layers/layered_packet.h): what
-/// GeneralPath does, within estimates. Each ray's streams are merged
-/// one number at a time; what lies on it is integrated in lanes. What these cannot do is left to a
-/// MultivariateRayIntegrator, part by part. Safe to use from any thread.
+/// GeneralPath does, within estimates. Each ray's streams are merged one number at a time; what
+/// lies on it is integrated in lanes. What these cannot do is left to a MultivariateRayIntegrator,
+/// part by part. Safe to use from any thread.
 class LayeredPackets {
  public:
   /// Null where there are no packets for these layers or for such a tolerance. All that is given
@@ -48,8 +48,6 @@ class LayeredPackets {
                  bool depth, Kernel kernel);
   /// Adds what packets see of a layer.
   void add(const ClippedLayer& layer, std::size_t number, const PacketLight& lights);
-  /// Returns whether packets are for it.
-  bool prepare(SeenLayer& one, const PacketLight& lights);
 
   const std::vector<ClippedLayer>& layers_;
   const std::vector<LightSource<double>>& lights_;

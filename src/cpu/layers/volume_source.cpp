@@ -241,9 +241,7 @@ class VolumeStream : public GridStream {
     stretch.begin = cut_to_;
     come_to(cut_to_);
     StructuredWalk<double>::Step part = part_of_label(run_.end);
-    stretch.function = source_.function_at(part.cell);
-    bool is_one = has_one_function(part, stretch.function);
-    if (!is_one) stretch.left_out = source_.most_extinction();
+    bool is_one = tell_function(part, stretch);
     cut_to_ = part.t_end;
     while (is_one && cut_to_ < run_.end) {
       come_to(cut_to_);
@@ -255,8 +253,7 @@ class VolumeStream : public GridStream {
       cut_to_ = part.t_end = more.t_end;
     }
     stretch.end = cut_to_;
-    stretch.position_error =
-        std::max(2 * grid_position_error(part.t_end), sides_.position_error(part));
+    stretch.position_error = position_error(part);
     return true;
   }
 
@@ -286,6 +283,18 @@ class VolumeStream : public GridStream {
     return is_one;
   }
 
+  /// Tells the function of a part. Returns whether it has no other.
+  bool tell_function(const StructuredWalk<double>::Step& part, LayerStretch& stretch) const {
+    stretch.function = source_.function_at(part.cell);
+    const bool is_one = has_one_function(part, stretch.function);
+    if (!is_one) stretch.left_out = source_.most_extinction();
+    return is_one;
+  }
+  /// Returns how far off the ends of a part may be together.
+  double position_error(const StructuredWalk<double>::Step& part) const {
+    return std::max(2 * grid_position_error(part.t_end), sides_.position_error(part));
+  }
+
   /// Goes on to the label at t.
   void come_to(double t) {
     // Through few cells, or over a gap.
@@ -304,10 +313,8 @@ class VolumeStream : public GridStream {
     const StructuredWalk<double>::Step part = part_of_label(step_.t_end);
     stretch.begin = part.t_begin;
     stretch.end = part.t_end;
-    stretch.function = source_.function_at(part.cell);
-    stretch.position_error =
-        std::max(2 * grid_position_error(part.t_end), sides_.position_error(part));
-    if (!has_one_function(part, stretch.function)) stretch.left_out = source_.most_extinction();
+    stretch.position_error = position_error(part);
+    tell_function(part, stretch);
     const double length = step_.t_end - step_.t_begin;
     tell((part.t_begin - step_.t_begin) / length, (part.t_end - step_.t_begin) / length, stretch);
     cut_to_ = part.t_end;
