@@ -50,7 +50,7 @@ TEST(VolumeFormats, ShareNoExtension) {
 
 TEST(VolumeFormats, AreRecognizedByNameOrContent) {
   for (const VolumeFormat* const format : volume_formats()) {
-    EXPECT_TRUE(!format->extensions.empty() || format->takes_path || format->takes_content ||
+    EXPECT_TRUE(!format->extensions.empty() || format->takes_path || format->content_owner ||
                 format->takes_unknown_name)
         << format->name;
     EXPECT_NE(format->open, nullptr) << format->name;

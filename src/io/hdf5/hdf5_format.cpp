@@ -2,7 +2,6 @@
 #include "hdf5_format.h"
 
 #include "grid_modules/grid_files.h"
-#include "vtk_hdf.h"
 
 namespace pellucid {
 
@@ -16,8 +15,6 @@ constexpr GridFormat hdf5{{"pellucid_hdf5.so", "reads HDF5 files", "HDF5 (Debian
 const VolumeFormat hdf5_format{
     .name = "HDF5",
     .extensions = ".h5 .hdf5 .he5 .ims",  // the last is Imaris
-    .refuses =
-        [](const std::filesystem::path& path) { return vtk_hdf_type(path) == "UnstructuredGrid"; },
     .open = [](const std::filesystem::path& path,
                const ReadOptions& options) { return open_grid(path, options, hdf5); },
     .list = [](const std::filesystem::path& path,

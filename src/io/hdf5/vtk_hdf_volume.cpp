@@ -241,11 +241,12 @@ std::vector<VolumeArray> list_vtk_hdf_arrays(const std::filesystem::path& path) 
 extern const VolumeFormat vtk_hdf_format{
     .name = "VTKHDF",
     .extensions = ".vtkhdf .hdf",
-    .takes_content =
+    .content_owner =
         [](const std::filesystem::path& path, const VolumeFormat* by_name) {
-          if (by_name != nullptr && by_name != &hdf5_format) return false;
+          if (by_name != nullptr && by_name != &hdf5_format) return ContentOwner::others;
           const std::string type = vtk_hdf_type(path);
-          return !type.empty() && type != "UnstructuredGrid";
+          if (type.empty()) return ContentOwner::others;
+          return type == "UnstructuredGrid" ? ContentOwner::no_volume : ContentOwner::this_format;
         },
     .refuses = is_mesh_file,
     .open = open_vtk_hdf,

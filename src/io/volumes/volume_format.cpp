@@ -32,11 +32,14 @@ const VolumeFormat* format_of_folder(const std::filesystem::path& path) {
 
 const VolumeFormat* format_of_file(const std::filesystem::path& path, const ReadOptions& options) {
   const VolumeFormat* const by_name = volume_format_by_name(path.filename().string());
+  auto owner = ContentOwner::others;
   const VolumeFormat* const by_content = first_format([&](const VolumeFormat& known) {
-    return known.takes_content != nullptr && known.takes_content(path, by_name);
+    if (known.content_owner != nullptr) owner = known.content_owner(path, by_name);
+    return owner != ContentOwner::others;
   });
-  if (by_content != nullptr) return by_content;
-  if (by_name != nullptr && (by_name->refuses == nullptr || !by_name->refuses(path))) {
+  if (owner == ContentOwner::this_format) return by_content;
+  if (owner == ContentOwner::others && by_name != nullptr &&
+      (by_name->refuses == nullptr || !by_name->refuses(path))) {
     return by_name;
   }
   // Whoever says how large the data is and of what type has said that it has no header.

@@ -13,6 +13,13 @@ namespace pellucid {
 
 struct DamagedDicomFile;
 
+/// What the content of a file says of a format of volumes.
+enum class ContentOwner {
+  others,  ///< nothing
+  this_format,
+  no_volume  ///< that it is of the format, but no volume: formats are not asked by its name
+};
+
 /// A format of volume files: its name, how its files are told from others, and how they are read.
 /// Each folder of a format defines such objects and names them in its sources.cmake, from which the
 /// table of all formats is made. A pointer that is null says that there is no such function.
@@ -27,9 +34,10 @@ struct VolumeFormat {
   /// Returns whether a folder is of this format.
   bool (*takes_folder)(const std::filesystem::path& path) = nullptr;
   bool takes_other_folders = false;  ///< that no format takes before
-  /// Returns whether a file is of this format by its content, whatever its name is. `by_name` is
-  /// the format of files of that name; null: there is none.
-  bool (*takes_content)(const std::filesystem::path& path, const VolumeFormat* by_name) = nullptr;
+  /// Returns whose a file is by its content, whatever its name is. `by_name` is the format of files
+  /// of that name; null: there is none.
+  ContentOwner (*content_owner)(const std::filesystem::path& path,
+                                const VolumeFormat* by_name) = nullptr;
   /// Returns whether a file that has one of the extensions is of another kind.
   bool (*refuses)(const std::filesystem::path& path) = nullptr;
   /// Returns whether a file whose name no format has is of this one.

@@ -104,8 +104,10 @@ bool is_image_collection(const fs::path& path) {
 
 extern const VolumeFormat image_collection_format{
     .name = "VTK, a list of images",
-    .takes_content = [](const fs::path& path,
-                        const VolumeFormat*) { return is_image_collection(path); },
+    .content_owner =
+        [](const fs::path& path, const VolumeFormat*) {
+          return is_image_collection(path) ? ContentOwner::this_format : ContentOwner::others;
+        },
     .open = [](const fs::path& path,
                const ReadOptions& options) { return open_vtk_volume(only_image(path), options); },
     .list = [](const fs::path& path,

@@ -119,10 +119,12 @@ std::vector<VolumeArray> list_vtk_arrays(const std::filesystem::path& path) {
 extern const VolumeFormat vtk_format{
     .name = "VTK",
     .extensions = ".vti .pvti .vtr .pvtr .vtk",
-    .takes_content =
+    .content_owner =
         [](const std::filesystem::path& path, const VolumeFormat* by_name) {
           const std::optional<VtkFileKind> kind = vtk_file_kind(path);
-          return kind && kind->is_volume() && (by_name == nullptr || by_name->has_header);
+          const bool is_ours =
+              kind && kind->is_volume() && (by_name == nullptr || by_name->has_header);
+          return is_ours ? ContentOwner::this_format : ContentOwner::others;
         },
     .refuses = is_mesh_file,
     .open = open_vtk_volume,
