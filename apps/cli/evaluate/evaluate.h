@@ -33,6 +33,12 @@ EvaluateKind gaussian_segment_kniss_kind();
 EvaluateKind gaussian_mixture_segment_kind();
 EvaluateKind gaussian_mixture_segment_kniss_kind();
 
+/// Returns a number as the tables of results have it.
+template <class T>
+double wide(T x) {
+  return static_cast<double>(x);
+}
+
 /// Returns a number that must not be negative: an extinction, a length.
 template <class T>
 T non_negative(const CsvTable& table, std::size_t row, std::size_t column);

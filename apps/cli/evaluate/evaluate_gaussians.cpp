@@ -17,11 +17,6 @@ namespace pellucid::cli {
 
 namespace {
 
-template <class T>
-double wide(T x) {
-  return static_cast<double>(x);
-}
-
 /// One to eight numbers at each end, front first.
 template <class T>
 struct Ends {

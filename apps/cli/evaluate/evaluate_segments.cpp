@@ -8,11 +8,6 @@ namespace pellucid::cli {
 namespace {
 
 template <class T>
-double wide(T x) {
-  return static_cast<double>(x);
-}
-
-template <class T>
 void linear_row(const CsvTable& table, const std::vector<std::size_t>& columns, std::size_t row,
                 double /*tolerance*/, std::vector<double>& outputs) {
   const T extinction_f = non_negative<T>(table, row, columns[0]);

@@ -74,12 +74,7 @@ bool write_grid_contents(const GridContents& contents, std::span<std::byte> to) 
   for (const GridOther& other : contents.others) {
     j["others"].push_back({of_text(other.name), of_text(other.is)});
   }
-  const std::vector<std::uint8_t> bytes = json::to_cbor(j);
-  const std::uint64_t size = bytes.size();
-  if (to.size() < sizeof(size) || to.size() - sizeof(size) < size) return false;
-  std::memcpy(to.data(), &size, sizeof(size));
-  std::memcpy(to.data() + sizeof(size), bytes.data(), size);
-  return true;
+  return write_answer(j, to);
 }
 
 std::optional<GridContents> read_grid_contents(std::span<const std::byte> from) {

@@ -65,12 +65,7 @@ bool write(const VtkHdfContents& contents, std::span<std::byte> to) {
                of_text(contents.cell_scalars),
                arrays,
                of_text(contents.error)};
-  const std::vector<std::uint8_t> bytes = json::to_cbor(j);
-  const std::uint64_t size = bytes.size();
-  if (to.size() < sizeof(size) || to.size() - sizeof(size) < size) return false;
-  std::memcpy(to.data(), &size, sizeof(size));
-  std::memcpy(to.data() + sizeof(size), bytes.data(), size);
-  return true;
+  return write_answer(j, to);
 }
 
 /// Throws json::exception where the bytes are no contents.

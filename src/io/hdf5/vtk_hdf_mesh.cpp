@@ -23,7 +23,7 @@ constexpr const char* ghosts = "vtkGhostType";
 // vtkDataSetAttributes.h, of VTK 9.
 constexpr unsigned duplicate_cell = 1, refined_cell = 8, hidden_cell = 32, hidden_point = 2;
 
-/// What the lists of the faces of polyhedra hold, piece by piece.
+/// Lists of the faces of polyhedra, piece by piece.
 struct Faces {
   std::vector<std::int64_t> per_piece, points_per_piece, uses_per_piece;
   std::vector<std::int64_t> points, offsets, uses, cell_offsets;

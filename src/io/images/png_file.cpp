@@ -19,6 +19,7 @@
 #include "pellucid/io/display_bytes.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/scene/error.h"
+#include "png_failure.h"
 
 namespace pellucid {
 
@@ -33,22 +34,10 @@ struct PngContent {
   int texts;
 };
 
-// What libpng says where it fails.
-struct Failure {
-  char text[128] = "not enough memory";
-};
-
-// libpng's own handler prints; and a handler may not return.
-[[noreturn]] void leave(png_structp png, png_const_charp message) {
-  Failure& failure = *static_cast<Failure*>(png_get_error_ptr(png));
-  std::snprintf(failure.text, sizeof(failure.text), "%s", message);
-  png_longjmp(png, 1);
-}
-void ignore(png_structp, png_const_charp) {}
-
 // libpng leaves by longjmp where it fails, so nothing in here may need a destructor.
-bool write_with_libpng(std::FILE* file, const PngContent& content, Failure& failure) {
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &failure, leave, ignore);
+bool write_with_libpng(std::FILE* file, const PngContent& content, PngFailure& failure) {
+  png_structp png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, &failure, leave_png, ignore_png_warning);
   if (png == nullptr) return false;
   png_infop info = png_create_info_struct(png);
   if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
@@ -82,7 +71,7 @@ void check_picture(const Image& image, const std::filesystem::path& path,
 
 /// Writes a checked picture. Returns false where libpng fails.
 bool write_stream(std::FILE* stream, const Image& image,
-                  const std::optional<Background>& background, Failure& failure) {
+                  const std::optional<Background>& background, PngFailure& failure) {
   std::vector<std::uint8_t> bytes = to_srgb8(image, background);
   const std::size_t width = static_cast<std::size_t>(image.width);
   const std::size_t height = static_cast<std::size_t>(image.height);
@@ -121,7 +110,7 @@ void write_png(const Image& image, const std::filesystem::path& path,
   AtomicFile file(path);
   std::FILE* stream = std::fopen(file.temporary_path().c_str(), "wb");
   if (stream == nullptr) throw Error(path.string() + ": cannot write the file");
-  Failure failure;
+  PngFailure failure;
   const bool written = write_stream(stream, image, background, failure);
   const bool closed = std::fclose(stream) == 0;
   if (!written) throw Error(path.string() + ": cannot write: " + failure.text);
@@ -136,7 +125,7 @@ std::string encode_png(const Image& image, const std::optional<Background>& back
   std::size_t size = 0;
   std::FILE* const stream = open_memstream(&bytes, &size);
   if (stream == nullptr) throw std::bad_alloc();
-  Failure failure;
+  PngFailure failure;
   const bool written = write_stream(stream, image, background, failure);
   const bool closed = std::fclose(stream) == 0;
   const std::unique_ptr<char, void (*)(void*)> owner(bytes, std::free);

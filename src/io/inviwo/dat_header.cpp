@@ -193,8 +193,8 @@ bool is_big_endian(const Fields& fields, const std::string& name) {
               "\" is neither LittleEndian nor BigEndian; mend the header");
 }
 
-/// Whether a file is a header of Inviwo or Voreen: lines "Key: value", one of which names the file
-/// of values.
+/// Returns whether a file is a header of Inviwo or Voreen: lines "Key: value", one of which names
+/// the file of values.
 bool is_dat_header(const fs::path& path) {
   const Fields fields = read_fields(path, path.string());
   return (!file_of(fields).empty() && has_dimensions(fields)) || fields.contains("datfile");

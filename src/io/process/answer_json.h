@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,6 +33,16 @@ inline json of_text(const std::string& text) {
 inline std::string text_of(const json& text) {
   const auto& bytes = text.get_binary();
   return {bytes.begin(), bytes.end()};
+}
+
+/// Writes an answer with its size in front. Returns false if there is too little room.
+inline bool write_answer(const json& answer, std::span<std::byte> to) {
+  const std::vector<std::uint8_t> bytes = json::to_cbor(answer);
+  const std::uint64_t size = bytes.size();
+  if (to.size() < sizeof(size) || to.size() - sizeof(size) < size) return false;
+  std::memcpy(to.data(), &size, sizeof(size));
+  std::memcpy(to.data() + sizeof(size), bytes.data(), size);
+  return true;
 }
 
 inline json of_placement(const GridPlacement& p) {

@@ -40,12 +40,13 @@ bool is_tiff(const std::string& name) {
 bool is_image(const std::string& name) {
   return is_tiff(name) || in_small_letters(name).ends_with(".png");
 }
-/// Whether a path is OME-XML beside the files of pages that it describes (".companion.ome").
+/// Returns whether a path is OME-XML beside the files of pages that it describes
+/// (".companion.ome").
 bool is_companion(const fs::path& path) {
   return in_small_letters(path.filename().string()).ends_with(".companion.ome");
 }
 
-/// Whether a path is a pattern of numbered images ("slice%03d.tif") and no file.
+/// Returns whether a path is a pattern of numbered images ("slice%03d.tif") and no file.
 bool is_stack_pattern(const fs::path& path) {
   std::error_code error;
   const std::string name = path.filename().string();

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "image_pages.h"
+#include "images/png_failure.h"
 #include "pellucid/scene/error.h"
 #include "text/readable_number.h"
 #include "text/text.h"
@@ -23,18 +24,6 @@
 namespace pellucid {
 
 namespace {
-
-struct Failure {
-  char text[128] = "not enough memory";
-};
-
-// libpng's own handler prints; and a handler may not return.
-[[noreturn]] void leave(png_structp png, png_const_charp message) {
-  Failure& failure = *static_cast<Failure*>(png_get_error_ptr(png));
-  std::snprintf(failure.text, sizeof(failure.text), "%s", message);
-  png_longjmp(png, 1);
-}
-void ignore(png_structp, png_const_charp) {}
 
 // Where all rows go, and the bytes of each, as libpng is about to write them. No pointers to rows:
 // a header of many rows would ask for eight bytes each that no check of memory knows of.
@@ -45,8 +34,9 @@ struct Rows {
 };
 
 // libpng leaves by longjmp where it fails, so nothing in here may need a destructor.
-bool read_with_libpng(std::FILE* file, const Rows& to, Failure& failure) {
-  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &failure, leave, ignore);
+bool read_with_libpng(std::FILE* file, const Rows& to, PngFailure& failure) {
+  png_structp png =
+      png_create_read_struct(PNG_LIBPNG_VER_STRING, &failure, leave_png, ignore_png_warning);
   if (png == nullptr) return false;
   png_infop info = png_create_info_struct(png);
   if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
@@ -119,7 +109,7 @@ class PngReader : public PageReader {
                     bytes};
     std::FILE* stream = std::fopen(file_.c_str(), "rb");
     if (stream == nullptr) throw Error(name_ + ": cannot read the file");
-    Failure failure;
+    PngFailure failure;
     const bool done = read_with_libpng(stream, rows, failure);
     std::fclose(stream);
     if (!done) {

@@ -300,8 +300,8 @@ void look_at(const VolumeFile& file, VolumeArray& about) {
   }
 }
 
-/// Whether a path is a data set of vtk.js (vtkHttpDataSetReader): a folder with an index.json that
-/// has a "vtkClass", or this file.
+/// Returns whether a path is a data set of vtk.js (vtkHttpDataSetReader): a folder with an
+/// index.json that has a "vtkClass", or this file.
 bool is_vtk_js(const fs::path& path) {
   std::error_code error;
   const fs::path index = index_of(path);
