@@ -33,7 +33,8 @@ install(TARGETS ${targets} EXPORT pellucidTargets
 set(component_table "")
 foreach(module IN LISTS modules)
   install(DIRECTORY include/pellucid/${module}
-    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pellucid FILES_MATCHING PATTERN "*.h")
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pellucid FILES_MATCHING PATTERN "*.h"
+    PATTERN internal EXCLUDE)
   get_property(depends GLOBAL PROPERTY PELLUCID_DEPENDS_${module})
   _pellucid_packages(pellucid_${module} packages)
   string(APPEND component_table

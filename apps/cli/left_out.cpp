@@ -2,7 +2,7 @@
 //
 // Stands in for the sources and libraries that builds for a first picture leave out
 // (PELLUCID_FIRST_PICTURE).
-#include "pellucid/scene/left_out.h"
+#include "pellucid/scene/internal/left_out.h"
 
 #include "commands.h"
 #include "pellucid/reference/render.h"

@@ -13,8 +13,8 @@
 #include "arguments/scene_text.h"
 #include "commands.h"
 #include "pellucid/cpu/threads.h"
-#include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/io/internal/atomic_file.h"
 
 namespace pellucid::cli {
 

@@ -10,9 +10,9 @@
 #include "arguments/overwriting.h"
 #include "arguments/parse.h"
 #include "commands.h"
-#include "pellucid/io/atomic_file.h"
 #include "pellucid/io/export_transfer_function.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/io/scene_json.h"
 
 namespace pellucid::cli {

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "overlay.h"
-#include "pellucid/cpu/moving_pictures.h"
+#include "pellucid/cpu/internal/moving_pictures.h"
 #include "pellucid/cpu/renderer.h"
 #include "server/page_server.h"
 

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "benchmarks/support/document.h"
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/reference/render.h"
 #include "tests/scenes/scene_hash.h"
 

@@ -13,8 +13,8 @@
 #include "benchmarks/frames/matrix_report.h"
 #include "benchmarks/support/document.h"
 #include "benchmarks/support/environment.h"
-#include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/io/internal/atomic_file.h"
 
 namespace {
 

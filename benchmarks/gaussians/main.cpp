@@ -13,7 +13,7 @@
 #include "benchmarks/gaussians/gaussian_scenes.h"
 #include "benchmarks/support/document.h"
 #include "benchmarks/support/environment.h"
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 
 namespace {
 

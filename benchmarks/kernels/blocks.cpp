@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "pellucid/scene/block_classes_storage.h"
-#include "pellucid/scene/transfer_tables_storage.h"
+#include "pellucid/scene/internal/block_classes_storage.h"
+#include "pellucid/scene/internal/transfer_tables_storage.h"
 #include "pellucid/traverse/block_walk.h"
 #include "pellucid/traverse/build_block_records.h"
 

@@ -5,7 +5,7 @@
 
 #include "benchmarks/kernels/inputs.h"
 #include "pellucid/field/trilinear.h"
-#include "pellucid/scene/antiderivative_storage.h"
+#include "pellucid/scene/internal/antiderivative_storage.h"
 #include "pellucid/segment/cubic.h"
 #include "pellucid/segment/line_rule.h"
 

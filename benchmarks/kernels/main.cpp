@@ -12,7 +12,7 @@
 #include "benchmarks/kernels/packet_table.h"
 #include "benchmarks/support/document.h"
 #include "benchmarks/support/environment.h"
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 
 namespace {
 

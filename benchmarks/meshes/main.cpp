@@ -15,7 +15,7 @@
 #include "benchmarks/support/document.h"
 #include "benchmarks/support/environment.h"
 #include "benchmarks/vtk/vtk_contenders.h"
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include "benchmarks/scaling/study.h"
 #include "benchmarks/support/document.h"
 #include "benchmarks/support/environment.h"
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <cstdarg>
 #include <cstdio>
 
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid::bench {

@@ -16,7 +16,7 @@
 #include "grid_layers.h"
 #include "mesh_layers.h"
 #include "notes.h"
-#include "pellucid/cpu/moving_pictures.h"
+#include "pellucid/cpu/internal/moving_pictures.h"
 #include "pellucid/cpu/renderer.h"
 #include "pellucid/scene/scene.h"
 #include "view.h"

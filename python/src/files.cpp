@@ -6,9 +6,9 @@
 
 #include "common.h"
 #include "handles.h"
-#include "pellucid/io/atomic_file.h"
-#include "pellucid/io/color_data.h"
 #include "pellucid/io/dicom_series.h"
+#include "pellucid/io/internal/atomic_file.h"
+#include "pellucid/io/internal/color_data.h"
 #include "scenes.h"
 
 namespace pellucid::python {

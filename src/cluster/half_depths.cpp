@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "pellucid/cluster/render.h"
-#include "pellucid/cpu/find_depths.h"
+#include "pellucid/cpu/internal/find_depths.h"
 
 namespace pellucid {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "mpi_module.h"
 #include "pellucid/cluster/communicator.h"
-#include "pellucid/io/module.h"
+#include "pellucid/io/internal/module.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pellucid/cluster/communicator.h"
-#include "pellucid/cpu/projected_rays.h"
+#include "pellucid/cpu/internal/projected_rays.h"
 
 namespace pellucid {
 

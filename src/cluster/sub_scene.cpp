@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "pellucid/scene/error.h"
-#include "pellucid/scene/value_noise.h"
+#include "pellucid/scene/internal/value_noise.h"
 
 namespace pellucid {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "pellucid/cluster/brick_tree.h"
 #include "pellucid/cluster/communicator.h"
-#include "pellucid/scene/absorbing_blocks.h"
+#include "pellucid/scene/internal/absorbing_blocks.h"
 #include "pellucid/scene/sub_volume.h"
 
 namespace pellucid {

@@ -2,7 +2,7 @@
 //
 // Stands in for the sources that builds for a first picture leave out (PELLUCID_FIRST_PICTURE).
 // Light, surfaces and several variables take the general path, which is slower.
-#include "pellucid/scene/left_out.h"
+#include "pellucid/scene/internal/left_out.h"
 
 #include "device/device_frame.h"
 #include "device/device_layer.h"

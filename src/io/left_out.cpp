@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Stands in for the sources that builds for a first picture leave out (PELLUCID_FIRST_PICTURE).
-#include "pellucid/scene/left_out.h"
+#include "pellucid/scene/internal/left_out.h"
 
 #include "axes/grid_axes.h"
 #include "axes/positions_beside.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/scene/axis_ticks.h"
+#include "pellucid/scene/internal/axis_ticks.h"
 
 #include <algorithm>
 #include <charconv>

@@ -9,8 +9,8 @@
 #include "layer_light.h"
 #include "message.h"
 #include "moved_source.h"
-#include "pellucid/scene/absorbing_blocks.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/internal/absorbing_blocks.h"
 
 namespace pellucid {
 namespace {

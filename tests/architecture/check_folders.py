@@ -22,7 +22,6 @@ TOP = ("apps", "benchmarks", "examples", "include", "plugins", "python", "src", 
 
 # Folders with more files, and how many they may have.
 LARGE = {
-    "include/pellucid/scene": 48,
     "src/cpu/layers": 45,
     "tests/scenes": 50,
 }

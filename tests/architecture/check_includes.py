@@ -18,7 +18,7 @@ import sys
 RANK = {
     "base": 0, "simd": 1, "math": 2, "geometry": 3, "field": 4, "transfer": 4, "error": 4,
     "segment": 5, "traverse": 6, "render": 7, "packet": 8, "scene": 9, "cuda": 10, "cpu": 11,
-    "io": 11, "cluster": 12, "reference": 12, "apps": 13, "plugins": 13,
+    "io": 11, "cluster": 12, "reference": 12, "umbrella": 13, "apps": 13, "plugins": 13,
 }
 CORE = {name for name, rank in RANK.items() if rank <= RANK["packet"]}
 # Further pairs that the ranks would allow: the closed forms of segment/ are tested without any
@@ -92,8 +92,13 @@ def module_of(path):
     """The module that a file of the repository belongs to, from its path relative to the root."""
     parts = path.parts
     if parts[0] == "include":
-        return parts[2] if len(parts) > 3 else None
+        return parts[2] if len(parts) > 3 else "umbrella"
     return parts[0] if parts[0] in ("apps", "plugins") else parts[1]
+
+
+def is_internal(header):
+    """Whether a header is for this repository alone, and not installed."""
+    return pathlib.PurePath(header).parent.name == "internal"
 
 
 def without_comments(text):
@@ -139,6 +144,8 @@ def check_file(root, path, modules):
                 yield f"{where}: {name} is ours: write it in quotes"
             if not (root / "include" / name).is_file():
                 yield f"{where}: {name} does not exist"
+            if relative.parts[0] == "include" and not is_internal(path) and is_internal(name):
+                yield f"{where}: {name} is not installed, but a header that is includes it"
             target = name.split("/")[1]
             if target not in RANK:
                 yield f"{where}: {target} has no place in the order of {ORDER}"

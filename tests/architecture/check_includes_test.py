@@ -40,6 +40,8 @@ PLANTS = [
     ("include/pellucid/math/planted.h", "#include <immintrin.h>", "SIMD library"),
     ("include/pellucid/math/planted.h", "#if defined(__CUDACC__)", "names CUDA"),
     ("include/pellucid/math/planted.h", "__device__ inline int one() { return 1; }", "names CUDA"),
+    ("include/pellucid/scene/planted.h", '#include "pellucid/scene/internal/left_out.h"',
+     "not installed"),
     ("include/pellucid/extras/planted.h", "#include <cstdint>", "no place in the order"),
 ]
 

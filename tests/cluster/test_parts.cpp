@@ -10,8 +10,8 @@
 #include "pellucid/cluster/render.h"
 #include "pellucid/cluster/sub_scene.h"
 #include "pellucid/cpu/renderer.h"
-#include "pellucid/scene/absorbing_blocks.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/internal/absorbing_blocks.h"
 #include "survey.h"
 #include "tests/scenes/makers.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/cpu/moving_pictures.h"
+#include "pellucid/cpu/internal/moving_pictures.h"
 
 #include <gtest/gtest.h>
 

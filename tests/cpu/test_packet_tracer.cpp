@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pellucid/scene/transfer_tables_storage.h"
+#include "pellucid/scene/internal/transfer_tables_storage.h"
 #include "pellucid/traverse/block_classes.h"
 
 namespace pellucid::test_packet_tracer {

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "pellucid/cuda/device_scene.h"
-#include "pellucid/scene/block_classes_storage.h"
-#include "pellucid/scene/multivariate_blocks_storage.h"
-#include "pellucid/scene/transfer_tables_storage.h"
+#include "pellucid/scene/internal/block_classes_storage.h"
+#include "pellucid/scene/internal/multivariate_blocks_storage.h"
+#include "pellucid/scene/internal/transfer_tables_storage.h"
 #include "pellucid/scene/view_camera.h"
 #include "tests/scenes/cameras.h"
 #include "tests/scenes/makers.h"

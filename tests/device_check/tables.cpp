@@ -7,7 +7,7 @@
 
 #include "benchmarks/support/document.h"
 #include "benchmarks/support/environment.h"
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "tests/device_check/kernel_table.h"
 #include "tests/device_check/parts.h"
 #include "tests/device_check/rows.h"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pellucid/io/read_volume.h"
+#include "pellucid/io/internal/parse_arrays.h"
 #include "pellucid/scene/error.h"
 
 namespace {

@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-#include "pellucid/io/read_volume.h"
+#include "pellucid/io/internal/parse_arrays.h"
 #include "pellucid/scene/error.h"
 
 namespace {

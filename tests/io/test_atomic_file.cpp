@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string>
 
-#include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "scratch_folder.h"
 
 namespace pellucid::test_atomic_file {

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "pellucid/scene/binned_transfer_storage.h"
+#include "pellucid/scene/internal/binned_transfer_storage.h"
 #include "pellucid/scene/transfer_function.h"
 
 namespace pellucid {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "pellucid/scene/binned_transfer_storage.h"
+#include "pellucid/scene/internal/binned_transfer_storage.h"
 #include "pellucid/scene/transfer_function.h"
 #include "tests/packet/transfer_lanes.h"
 #include "tests/simd/every_instruction_set.h"

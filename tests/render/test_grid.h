@@ -7,7 +7,7 @@
 #include "pellucid/field/structured_grid.h"
 #include "pellucid/geometry/ray.h"
 #include "pellucid/render/integrate_ray.h"
-#include "pellucid/scene/antiderivative_storage.h"
+#include "pellucid/scene/internal/antiderivative_storage.h"
 
 namespace pellucid {
 

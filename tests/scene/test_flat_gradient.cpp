@@ -12,8 +12,8 @@
 
 #include "pellucid/scene/builtin_fields.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/internal/value_noise.h"
 #include "pellucid/scene/layer.h"
-#include "pellucid/scene/value_noise.h"
 
 namespace pellucid::test_flat_gradient {
 namespace {

@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-#include "pellucid/scene/label_values.h"
+#include "pellucid/scene/internal/label_values.h"
 
 namespace pellucid::test_labels {
 namespace {

@@ -11,7 +11,7 @@
 #include "pellucid/cpu/render.h"
 #include "pellucid/reference/render.h"
 #include "pellucid/render/integrate_ray.h"
-#include "pellucid/scene/transfer_tables_storage.h"
+#include "pellucid/scene/internal/transfer_tables_storage.h"
 #include "tests/scenes/difference.h"
 #include "tests/support/accuracy.h"
 #include "tests/support/one_layer.h"

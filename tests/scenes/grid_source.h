@@ -10,8 +10,8 @@
 #include "pellucid/field/grid_gradient.h"
 #include "pellucid/render/integrate_multivariate_ray.h"
 #include "pellucid/scene/channels.h"
+#include "pellucid/scene/internal/multivariate_blocks_storage.h"
 #include "pellucid/scene/layer.h"
-#include "pellucid/scene/multivariate_blocks_storage.h"
 
 namespace pellucid::scenes {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "pellucid/math/bernstein.h"
-#include "pellucid/scene/antiderivative_storage.h"
+#include "pellucid/scene/internal/antiderivative_storage.h"
 #include "pellucid/transfer/piecewise_linear.h"
 
 /// Random cells and transfer functions for tests of bounds.

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "pellucid/scene/antiderivative_storage.h"
+#include "pellucid/scene/internal/antiderivative_storage.h"
 #include "tests/segment/table_rows.h"
 #include "tests/segment/wide_cubic_segment.h"
 

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "pellucid/scene/antiderivative_storage.h"
+#include "pellucid/scene/internal/antiderivative_storage.h"
 #include "tests/support/accuracy.h"
 
 namespace pellucid::test_antiderivative {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "pellucid/io/temporary_folder.h"
+#include "pellucid/io/internal/temporary_folder.h"
 #include "pellucid/scene/error.h"
 #include "view/server/folders.h"
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pellucid/scene/axis_ticks.h"
+#include "pellucid/scene/internal/axis_ticks.h"
 
 namespace pellucid::cli {
 

@@ -13,8 +13,8 @@
 #include "arguments/overwriting.h"
 #include "arguments/parse.h"
 #include "commands.h"
-#include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/io/internal/atomic_file.h"
 
 namespace pellucid::cli {
 

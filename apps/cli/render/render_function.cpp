@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "arguments/parse.h"
-#include "pellucid/io/atomic_file.h"
-#include "pellucid/io/color_data.h"
 #include "pellucid/io/import_transfer_function.h"
+#include "pellucid/io/internal/atomic_file.h"
+#include "pellucid/io/internal/color_data.h"
 #include "pellucid/scene/presets.h"
 #include "render.h"
 

@@ -19,7 +19,7 @@
 #include "pellucid/cluster/render.h"
 #include "pellucid/cpu/framed_camera.h"
 #include "pellucid/cpu/threads.h"
-#include "pellucid/scene/label_values.h"
+#include "pellucid/scene/internal/label_values.h"
 #include "progress.h"
 #include "render.h"
 #include "tolerance.h"

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "page_server.h"
-#include "pellucid/io/temporary_folder.h"
+#include "pellucid/io/internal/temporary_folder.h"
 #include "view/viewer.h"
 
 namespace pellucid::view {

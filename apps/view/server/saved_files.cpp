@@ -8,7 +8,7 @@
 #include "pellucid/io/export_transfer_function.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/import_transfer_function.h"
-#include "pellucid/io/temporary_folder.h"
+#include "pellucid/io/internal/temporary_folder.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid::view {

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "pellucid/io/temporary_folder.h"
+#include "pellucid/io/internal/temporary_folder.h"
 
 namespace pellucid::view {
 

@@ -39,8 +39,8 @@ inline constexpr const char* no_color_bars =
     "no color bar: it shows labels, and functions of one variable, but there are none";
 
 /// Returns the picture with legends over its right edge, composited over its pixels; depth, error
-/// and values are left out. Text is drawn by Cairo in a module (pellucid/io/module.h). Throws Error
-/// if that is not there or cannot draw.
+/// and values are left out. Text is drawn by Cairo in a module. Throws Error if that is not there
+/// or cannot draw.
 Image with_color_bars(const Image& image, const std::vector<ColorBar>& bars);
 /// Throws Error if with_color_bars() cannot draw: to be called before a long computation.
 void check_draws_color_bars();

@@ -131,14 +131,4 @@ bool is_volume_json(const std::filesystem::path& path);
 /// Returns the extensions of volume files for messages and help: ".nii .nii.gz …".
 std::string volume_extensions();
 
-/// Parse a file in memory; exposed for fuzzing. `name` opens the messages. Throw Error.
-Volume parse_npy(const std::vector<std::byte>& bytes, const std::string& name,
-                 const ReadOptions& options = {});
-Volume parse_npz(const std::vector<std::byte>& bytes, const std::string& name,
-                 const ReadOptions& options = {});
-Volume parse_raw(const std::vector<std::byte>& bytes, const std::string& name,
-                 const ReadOptions& options);
-Volume parse_slc(const std::vector<std::byte>& bytes, const std::string& name,
-                 const ReadOptions& options = {});
-
 }  // namespace pellucid

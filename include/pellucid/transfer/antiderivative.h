@@ -106,7 +106,7 @@ PELLUCID_HD RangeSummary<T> stretch_summary(T lower, T upper, const Material<T>&
 /// i+1, and node[k] merges node[2 k] and node[2 k + 1]. Any run of intervals is the union of at
 /// most 2 log2(leaves) nodes. All terms of a sum have the same sign, so that nothing cancels,
 /// however short the run is compared to the table. A view; owns nothing. Built by
-/// scene/antiderivative_storage.h.
+/// scene/internal/antiderivative_storage.h.
 template <class T>
 struct PiecewiseLinearAntiderivative {
   const RangeSummary<T>* node = nullptr;  ///< 2 · leaves summaries, node[0] unused

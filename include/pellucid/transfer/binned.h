@@ -11,7 +11,7 @@ namespace pellucid {
 /// A piecewise-linear transfer function for packets of rays. Extinction and color have separate
 /// tables, so that a segment is cut only at kinks of the extinction. Uniform bins over the data
 /// values lead to the table entries. A view of plain arrays, the same for every instruction set;
-/// owns nothing. Made by scene/binned_transfer_storage.h.
+/// owns nothing. Made by scene/internal/binned_transfer_storage.h.
 ///
 /// Bin 0 holds all values below the table, the last bin all values above. The bin of a value is
 /// rounded, but monotone in the value; bounds of a bin hold for all values that can fall into it.

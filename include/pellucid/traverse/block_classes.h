@@ -67,7 +67,7 @@ constexpr float sampled_step_share(int level) noexcept {
 }
 
 /// The classes of a grid's blocks, in the order of BlockRecords. A view; owns nothing. Built by
-/// scene/block_classes_storage.h.
+/// scene/internal/block_classes_storage.h.
 struct BlockClasses {
   const BlockClass* block = nullptr;
 

@@ -7,7 +7,7 @@
 namespace pellucid {
 
 /// Effect of a multivariate transfer function in each block of cells. Views; own nothing. Built by
-/// scene/multivariate_blocks_storage.h.
+/// scene/internal/multivariate_blocks_storage.h.
 struct MultivariateBlocks {
   BlockRecords records;                      ///< of the first channel: only their places are used
   BlockClasses classes;                      ///< skip or not

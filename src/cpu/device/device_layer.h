@@ -9,10 +9,10 @@
 #include "layers/layer_look.h"
 #include "mesh/mesh_field_storage.h"
 #include "pellucid/cuda/device_scene.h"
-#include "pellucid/scene/block_classes_storage.h"
-#include "pellucid/scene/multivariate_blocks_storage.h"
+#include "pellucid/scene/internal/block_classes_storage.h"
+#include "pellucid/scene/internal/multivariate_blocks_storage.h"
+#include "pellucid/scene/internal/transfer_tables_storage.h"
 #include "pellucid/scene/scene.h"
-#include "pellucid/scene/transfer_tables_storage.h"
 
 namespace pellucid {
 

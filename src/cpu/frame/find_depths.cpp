@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/cpu/find_depths.h"
+#include "pellucid/cpu/internal/find_depths.h"
 
 #include <algorithm>
 #include <limits>

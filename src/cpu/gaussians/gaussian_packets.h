@@ -8,8 +8,8 @@
 #include "gaussian_packet_job.h"
 #include "pellucid/packet/steps/resolved_gaussians.h"
 #include "pellucid/render/integrate_cell.h"
-#include "pellucid/scene/block_variation_storage.h"
-#include "pellucid/scene/multivariate_blocks_storage.h"
+#include "pellucid/scene/internal/block_variation_storage.h"
+#include "pellucid/scene/internal/multivariate_blocks_storage.h"
 #include "pellucid/simd/instruction_set.h"
 
 namespace pellucid {

@@ -8,7 +8,7 @@
 #include "frame/rays_apart.h"
 #include "gaussian_packets.h"
 #include "packet_setup.h"
-#include "pellucid/scene/multivariate_blocks_storage.h"
+#include "pellucid/scene/internal/multivariate_blocks_storage.h"
 #include "ray_tracer.h"
 #include "threads.h"
 

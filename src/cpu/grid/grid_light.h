@@ -13,7 +13,7 @@
 #include "pellucid/packet/light.h"
 #include "pellucid/packet/surfaces.h"
 #include "pellucid/render/integrate_cell.h"
-#include "pellucid/scene/binned_transfer_storage.h"
+#include "pellucid/scene/internal/binned_transfer_storage.h"
 #include "pellucid/scene/scene.h"
 
 namespace pellucid {

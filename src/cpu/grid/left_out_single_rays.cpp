@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Stands in for single_rays.cpp in builds for a first picture (PELLUCID_FIRST_PICTURE).
-#include "pellucid/scene/left_out.h"
+#include "pellucid/scene/internal/left_out.h"
 #include "single_rays.h"
 
 namespace pellucid {

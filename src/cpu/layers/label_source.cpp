@@ -7,8 +7,8 @@
 
 #include "grid_stream.h"
 #include "label_axes.h"
-#include "pellucid/scene/block_classes_storage.h"
-#include "pellucid/scene/transfer_tables_storage.h"
+#include "pellucid/scene/internal/block_classes_storage.h"
+#include "pellucid/scene/internal/transfer_tables_storage.h"
 #include "plane_doubt.h"
 
 namespace pellucid {

@@ -11,7 +11,7 @@
 #include "pellucid/packet/layered_interface.h"
 #include "pellucid/packet/layers/lane_mixture.h"
 #include "pellucid/packet/light.h"
-#include "pellucid/scene/binned_transfer_storage.h"
+#include "pellucid/scene/internal/binned_transfer_storage.h"
 
 namespace pellucid {
 

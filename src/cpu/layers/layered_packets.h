@@ -11,7 +11,7 @@
 #include "clipped_layer.h"
 #include "layer_rows.h"
 #include "pellucid/packet/light.h"
-#include "pellucid/scene/binned_transfer_storage.h"
+#include "pellucid/scene/internal/binned_transfer_storage.h"
 #include "pellucid/simd/instruction_set.h"
 #include "ray_tracer.h"
 

@@ -12,9 +12,9 @@
 #include "label_axes.h"
 #include "packet_setup.h"
 #include "pellucid/render/integrate_multivariate_ray.h"
-#include "pellucid/scene/block_classes_storage.h"
-#include "pellucid/scene/multivariate_blocks_storage.h"
-#include "pellucid/scene/transfer_tables_storage.h"
+#include "pellucid/scene/internal/block_classes_storage.h"
+#include "pellucid/scene/internal/multivariate_blocks_storage.h"
+#include "pellucid/scene/internal/transfer_tables_storage.h"
 #include "plane_doubt.h"
 
 namespace pellucid {

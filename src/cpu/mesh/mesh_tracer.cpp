@@ -13,8 +13,8 @@
 #include "packet_setup.h"
 #include "pellucid/packet/mesh_interface.h"
 #include "pellucid/render/integrate_mesh_ray.h"
-#include "pellucid/scene/binned_transfer_storage.h"
-#include "pellucid/scene/transfer_tables_storage.h"
+#include "pellucid/scene/internal/binned_transfer_storage.h"
+#include "pellucid/scene/internal/transfer_tables_storage.h"
 #include "ray_tracer.h"
 
 struct PellucidSpanContext {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "pellucid/cpu/projected_rays.h"
+#include "pellucid/cpu/internal/projected_rays.h"
 #include "pellucid/geometry/ray.h"
 #include "pellucid/scene/layer.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/cpu/projected_rays.h"
+#include "pellucid/cpu/internal/projected_rays.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include "pellucid/packet/multivariate_sampler_interface.h"
 #include "pellucid/render/ray_result.h"
-#include "pellucid/scene/multivariate_blocks_storage.h"
+#include "pellucid/scene/internal/multivariate_blocks_storage.h"
 #include "pellucid/simd/instruction_set.h"
 #include "ray_tracer.h"
 #include "sampled_multivariate_storage.h"

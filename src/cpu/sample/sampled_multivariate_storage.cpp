@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pellucid/scene/transfer_tables_storage.h"
+#include "pellucid/scene/internal/transfer_tables_storage.h"
 
 namespace pellucid {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/io/temporary_folder.h"
+#include "pellucid/io/internal/temporary_folder.h"
 
 #include <cstdlib>
 #include <system_error>

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "pellucid/io/module.h"
+#include "pellucid/io/internal/module.h"
 #include "volumes/components.h"
 
 namespace pellucid {

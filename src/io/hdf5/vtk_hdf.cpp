@@ -10,7 +10,7 @@
 
 #include "files/input_file.h"
 #include "files/memory_limit.h"
-#include "pellucid/io/module.h"
+#include "pellucid/io/internal/module.h"
 #include "pellucid/scene/error.h"
 #include "process/answer_json.h"
 #include "process/contained.h"

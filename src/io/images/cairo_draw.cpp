@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "cairo_module.h"
-#include "pellucid/scene/axis_ticks.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/internal/axis_ticks.h"
 #include "process/module_answer.h"
 #include "text/text.h"
 

@@ -9,10 +9,10 @@
 #include <variant>
 
 #include "cairo_module.h"
-#include "pellucid/io/module.h"
-#include "pellucid/scene/axis_ticks.h"
+#include "pellucid/io/internal/module.h"
 #include "pellucid/scene/color_map.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/internal/axis_ticks.h"
 #include "pellucid/scene/srgb.h"
 
 namespace pellucid {

@@ -16,8 +16,8 @@
 #include "files/input_file.h"
 #include "files/memory_limit.h"
 #include "image_checks.h"
-#include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "image_checks.h"
-#include "pellucid/io/atomic_file.h"
 #include "pellucid/io/display_bytes.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "png_failure.h"
 

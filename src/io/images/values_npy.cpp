@@ -4,8 +4,8 @@
 #include <string>
 
 #include "image_checks.h"
-#include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/io/internal/atomic_file.h"
 
 namespace pellucid {
 namespace {

@@ -15,7 +15,7 @@
 #include <string_view>
 
 #include "inviwo_values.h"
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "text/xml_scanner.h"
 #include "transfer_functions/foreign_text.h"

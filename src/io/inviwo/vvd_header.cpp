@@ -21,7 +21,7 @@
 
 #include "files/memory_limit.h"
 #include "inviwo_values.h"
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "text/printable.h"
 #include "text/text.h"

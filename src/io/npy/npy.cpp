@@ -20,6 +20,7 @@
 #include "axes/grid_axes.h"
 #include "axes/positions_beside.h"
 #include "files/memory_limit.h"
+#include "pellucid/io/internal/parse_arrays.h"
 #include "pellucid/scene/error.h"
 #include "volumes/stored_numbers.h"
 #include "volumes/volume_format.h"

@@ -15,6 +15,7 @@
 #include "axes/positions_beside.h"
 #include "files/zip_archive.h"
 #include "npy.h"
+#include "pellucid/io/internal/parse_arrays.h"
 #include "pellucid/scene/error.h"
 #include "volumes/array_statistics.h"
 #include "volumes/volume_format.h"

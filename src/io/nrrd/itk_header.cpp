@@ -11,7 +11,7 @@
 
 #include "files/input_file.h"
 #include "files/memory_limit.h"
-#include "pellucid/io/module.h"
+#include "pellucid/io/internal/module.h"
 #include "pellucid/scene/error.h"
 #include "volumes/stored_numbers.h"
 

@@ -19,7 +19,7 @@
 #include "nrrd_axes.h"
 #include "nrrd_fields.h"
 #include "nrrd_space.h"
-#include "pellucid/io/temporary_folder.h"
+#include "pellucid/io/internal/temporary_folder.h"
 #include "pellucid/scene/error.h"
 #include "text/text.h"
 #include "volumes/components.h"

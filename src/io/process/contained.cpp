@@ -19,7 +19,7 @@
 #include <new>
 #include <string_view>
 
-#include "pellucid/io/module.h"
+#include "pellucid/io/internal/module.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/io/module.h"
+#include "pellucid/io/internal/module.h"
 
 #include <dlfcn.h>
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "files/input_file.h"
+#include "pellucid/io/internal/parse_arrays.h"
 #include "pellucid/scene/error.h"
 #include "volumes/components.h"
 #include "volumes/volume_format.h"

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "pellucid/io/color_data.h"
+#include "pellucid/io/internal/color_data.h"
 #include "pellucid/scene/srgb.h"
 
 namespace pellucid {

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <unordered_set>
 
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/srgb.h"
 

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "pellucid/io/internal/parse_arrays.h"
 #include "pellucid/scene/error.h"
 #include "volumes/components.h"
 #include "volumes/volume_format.h"

@@ -19,7 +19,7 @@
 #include "page_marks.h"
 #include "page_placement.h"
 #include "page_values.h"
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "text/json_file.h"
 #include "text/printable.h"

@@ -12,7 +12,7 @@
 #include "acquisition_text.h"
 #include "imagej_text.h"
 #include "ome_xml.h"
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "shaped_text.h"
 #include "text/json_file.h"

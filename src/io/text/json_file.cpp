@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "printable.h"
 

@@ -6,8 +6,8 @@
 
 #include "foreign_readers.h"
 #include "foreign_text.h"
-#include "pellucid/io/atomic_file.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "scene/scene_json_parts.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "files/memory_limit.h"
-#include "pellucid/io/color_data.h"
+#include "pellucid/io/internal/color_data.h"
 #include "pellucid/scene/srgb.h"
 
 namespace pellucid {

@@ -9,7 +9,7 @@
 
 #include "components.h"
 #include "dicom/dicom_slices.h"
-#include "pellucid/io/color_data.h"
+#include "pellucid/io/internal/color_data.h"
 #include "pellucid/scene/error.h"
 #include "volume_format.h"
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "files/gzip_writer.h"
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "text/text.h"
 #include "volume_writers.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "text/xml_scanner.h"
 #include "volumes/volume_format.h"

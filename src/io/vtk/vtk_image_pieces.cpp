@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "text/xml_scanner.h"
 

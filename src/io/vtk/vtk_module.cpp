@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "files/memory_limit.h"
-#include "pellucid/io/module.h"
+#include "pellucid/io/internal/module.h"
 
 namespace pellucid {
 

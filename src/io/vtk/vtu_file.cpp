@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "pellucid/io/atomic_file.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/io/write_mesh.h"
 #include "pellucid/scene/error.h"
 #include "vtk/xml/vtk_xml_text.h"

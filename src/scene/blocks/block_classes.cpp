@@ -10,7 +10,7 @@
 #include "block_levels.h"
 #include "block_roughness.h"
 #include "block_smoothness.h"
-#include "pellucid/scene/block_classes_storage.h"
+#include "pellucid/scene/internal/block_classes_storage.h"
 #include "pellucid/traverse/block_code.h"
 
 namespace pellucid {

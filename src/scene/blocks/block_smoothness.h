@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "pellucid/scene/block_classes_storage.h"
+#include "pellucid/scene/internal/block_classes_storage.h"
 
 namespace pellucid {
 

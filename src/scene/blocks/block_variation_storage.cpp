@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/scene/block_variation_storage.h"
+#include "pellucid/scene/internal/block_variation_storage.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/scene/multivariate_blocks_storage.h"
+#include "pellucid/scene/internal/multivariate_blocks_storage.h"
 
 #include <array>
 #include <cmath>

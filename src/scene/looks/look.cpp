@@ -13,10 +13,10 @@
 #include "message.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/internal/value_noise.h"
 #include "pellucid/scene/joint_histogram.h"
 #include "pellucid/scene/labels.h"
 #include "pellucid/scene/presets.h"
-#include "pellucid/scene/value_noise.h"
 #include "value_sample.h"
 
 namespace pellucid {

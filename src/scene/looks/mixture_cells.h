@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "pellucid/scene/mixture_fit.h"
+#include "pellucid/scene/internal/mixture_fit.h"
 
 namespace pellucid {
 

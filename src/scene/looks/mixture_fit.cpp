@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/scene/mixture_fit.h"
+#include "pellucid/scene/internal/mixture_fit.h"
 
 #include <algorithm>
 #include <array>

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "pellucid/scene/error.h"
-#include "pellucid/scene/mixture_fit.h"
+#include "pellucid/scene/internal/mixture_fit.h"
 #include "readable_numbers.h"
 #include "suggest_histogram.h"
 #include "suggest_look.h"

@@ -5,8 +5,8 @@
 #include <variant>
 
 #include "layer_light.h"
+#include "pellucid/scene/internal/value_noise.h"
 #include "pellucid/scene/layer.h"
-#include "pellucid/scene/value_noise.h"
 
 namespace pellucid {
 namespace {

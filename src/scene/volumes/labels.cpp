@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "pellucid/scene/label_values.h"
+#include "pellucid/scene/internal/label_values.h"
 
 namespace pellucid {
 namespace {

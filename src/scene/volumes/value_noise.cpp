@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/scene/value_noise.h"
+#include "pellucid/scene/internal/value_noise.h"
 
 #include <algorithm>
 #include <array>

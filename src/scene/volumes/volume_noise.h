@@ -4,7 +4,7 @@
 #include <mutex>
 #include <optional>
 
-#include "pellucid/scene/value_noise.h"
+#include "pellucid/scene/internal/value_noise.h"
 
 namespace pellucid {
 

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "pellucid/io/read_volume.h"
+#include "pellucid/io/internal/parse_arrays.h"
 #include "tests/io/volume_files.h"
 
 namespace pellucid::test_npy {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "pellucid/io/read_volume.h"
+#include "pellucid/io/internal/parse_arrays.h"
 #include "tests/io/described_keys.h"
 #include "tests/io/volume_files.h"
 

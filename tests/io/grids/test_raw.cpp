@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pellucid/io/read_volume.h"
+#include "pellucid/io/internal/parse_arrays.h"
 #include "tests/io/volume_files.h"
 
 namespace pellucid::test_raw {

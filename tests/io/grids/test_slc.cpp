@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pellucid/io/read_volume.h"
+#include "pellucid/io/internal/parse_arrays.h"
 #include "tests/io/volume_files.h"
 #include "tests/support/test_data.h"
 

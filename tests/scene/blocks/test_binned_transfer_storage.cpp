@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/scene/binned_transfer_storage.h"
+#include "pellucid/scene/internal/binned_transfer_storage.h"
 
 #include <gtest/gtest.h>
 

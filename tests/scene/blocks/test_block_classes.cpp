@@ -13,8 +13,8 @@
 #include <thread>
 #include <vector>
 
-#include "pellucid/scene/block_classes_storage.h"
-#include "pellucid/scene/transfer_tables_storage.h"
+#include "pellucid/scene/internal/block_classes_storage.h"
+#include "pellucid/scene/internal/transfer_tables_storage.h"
 #include "pellucid/traverse/block_code.h"
 
 namespace pellucid::test_block_classes {

@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "pellucid/scene/block_classes_storage.h"
-#include "pellucid/scene/transfer_tables_storage.h"
+#include "pellucid/scene/internal/block_classes_storage.h"
+#include "pellucid/scene/internal/transfer_tables_storage.h"
 #include "pellucid/scene/volume.h"
 #include "tests/scenes/makers.h"
 

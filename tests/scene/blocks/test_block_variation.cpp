@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "pellucid/scene/block_variation_storage.h"
+#include "pellucid/scene/internal/block_variation_storage.h"
 
 namespace pellucid::test_block_variation {
 namespace {

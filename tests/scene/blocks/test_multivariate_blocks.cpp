@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "pellucid/render/integrate_multivariate_ray.h"
-#include "pellucid/scene/multivariate_blocks_storage.h"
+#include "pellucid/scene/internal/multivariate_blocks_storage.h"
 
 namespace pellucid::test_multivariate_blocks {
 namespace {

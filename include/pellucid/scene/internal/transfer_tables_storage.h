@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "pellucid/render/transfer_tables.h"
-#include "pellucid/scene/antiderivative_storage.h"
+#include "pellucid/scene/internal/antiderivative_storage.h"
 #include "pellucid/scene/transfer_function.h"
 
 namespace pellucid {
