@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -97,8 +98,31 @@ std::string_view projection_name(LayerProjection projection) noexcept;
 /// Returns the projection of this name, or none.
 std::optional<LayerProjection> projection_from_name(std::string_view name) noexcept;
 
+/// An object of a scene: a value, or one that others hold as well.
+template <class Object>
+struct Shared {
+  Shared(Object value) : object(std::make_shared<const Object>(std::move(value))) {}
+  Shared(std::shared_ptr<const Object> shared) noexcept : object(std::move(shared)) {}
+  Shared(std::shared_ptr<Object> shared) noexcept : object(std::move(shared)) {}
+
+  std::shared_ptr<const Object> object;
+};
+
 /// One kind of data with its look and its place in a scene.
 struct Layer {
+  Layer() = default;
+  Layer(LayerContent wanted) : content(std::move(wanted)) {}
+  /// A volume with the look of the kind of data that it seems to be: function, shading, surfaces or
+  /// labels of choose_look().
+  explicit Layer(Shared<Volume> volume);
+  /// A mesh with its look, likewise.
+  explicit Layer(Shared<MeshChannels> mesh);
+  Layer(Shared<Volume> volume, Shared<TransferFunction> function);
+  Layer(Shared<Channels> channels, Shared<MultivariateTransferFunction> function);
+  Layer(Shared<MeshChannels> mesh, Shared<TransferFunction> function);
+  Layer(Shared<MeshChannels> mesh, Shared<MultivariateTransferFunction> function);
+  Layer(Shared<LabelVolume> labels, Shared<LabelTable> table);
+
   LayerContent content;
   std::string name{};
   bool visible = true;

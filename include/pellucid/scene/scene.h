@@ -105,9 +105,14 @@ struct Integration {
 /// so do extinction · color: a mixture of particles (Max 1995). The order of the layers does not
 /// matter, except among projected ones (Layer::projection).
 struct Scene {
+  Scene() = default;
+  /// A scene of one layer, seen by default_camera() of visible_corners(). Throws Error unless the
+  /// layer passes check_layer(), and if a size is not in [1, 65536].
+  explicit Scene(Layer layer, ImageSize wanted = {});
+
   std::vector<Layer> layers;
-  std::vector<Clip> clips;             ///< for all layers; what all of them keep is shown
-  std::vector<Light> lights{Light{}};  ///< for all layers that have a shading
+  std::vector<Clip> clips;  ///< for all layers; what all of them keep is shown
+  std::vector<Light> lights = std::vector<Light>(1);  ///< for all layers that have a shading
   Camera camera;
   ImageSize size;
   /// A pixel is the mean of samples × samples rays through the centres of its equal parts.
