@@ -42,6 +42,10 @@ foreach(module IN LISTS modules)
     "set(_pellucid_packages_${module} \"${packages}\")\n")
 endforeach()
 
+if("cpu" IN_LIST modules AND "io" IN_LIST modules)
+  install(FILES include/pellucid/pellucid.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pellucid)
+endif()
+
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pellucid)
 install(EXPORT pellucidTargets NAMESPACE pellucid:: DESTINATION ${package_dir})
 configure_package_config_file(cmake/pellucidConfig.cmake.in pellucidConfig.cmake

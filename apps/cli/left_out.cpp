@@ -52,7 +52,7 @@ int run_on_ranks(const RenderArguments&) {
 
 }  // namespace cli
 
-Image render_reference(const Scene&, const RenderOptions&, RenderReport*) {
+RenderResult render_reference(const Scene&, const RenderOptions&) {
   throw left_out("--reference: the reference renderer");
 }
 

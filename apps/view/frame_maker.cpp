@@ -62,13 +62,12 @@ bool FrameMaker::render(const Scene& scene, const Lettering& lettering, bool wit
   }
   start_phase(!is_exact, levels);
   RenderOptions options;
-  options.preview = levels;
-  options.error = with_error_map && is_exact;
-  options.tile = [this](const TileResult& result) { return tile_is_done(result); };
-  options.stop = stop_.get_token();
-  RenderReport report;
+  options.monitor.preview = levels;
+  options.outputs.error = with_error_map && is_exact;
+  options.monitor.tile = [this](const TileResult& result) { return tile_is_done(result); };
+  options.monitor.stop = stop_.get_token();
   try {
-    Image image = renderer_.render(scene, options, &report);
+    auto [image, report] = renderer_.render(scene, options);
     measure(0);
     publish_exact(image, report);
     exact_ = std::move(image);
@@ -82,13 +81,13 @@ bool FrameMaker::render_samples(const Scene& scene) {
   start_phase(true, preview_levels(scene.size));
   samples_suffice_ = false;
   RenderOptions options;
-  options.preview = levels_;
-  options.tile = [this](const TileResult& result) { return tile_is_done(result); };
-  options.stop = stop_.get_token();
+  options.monitor.preview = levels_;
+  options.monitor.tile = [this](const TileResult& result) { return tile_is_done(result); };
+  options.monitor.stop = stop_.get_token();
   try {
-    const Image image = sampler_.render(sampled_scene(scene), options);
+    Image image = sampler_.render(sampled_scene(scene), options).image;
     measure(0);
-    return show(0, image);
+    return show(0, ImageView(image));
   } catch (const Cancelled&) {
     return samples_suffice_;
   }
@@ -126,7 +125,7 @@ bool FrameMaker::tile_is_done(const TileResult& result) {
   return level_is_done(complete, result.image);
 }
 
-bool FrameMaker::level_is_done(int level, const Image& image) {
+bool FrameMaker::level_is_done(int level, const ImageView& image) {
   const auto l = static_cast<std::size_t>(level);
   const LevelSeconds& of_last = is_sampled_ ? sampled_seconds_ : exact_seconds_;
   const double last = of_last[l], last_finer = of_last[l - 1];
@@ -141,7 +140,7 @@ bool FrameMaker::level_is_done(int level, const Image& image) {
   return !samples_suffice_ || scene_->integration.method != Method::exact;
 }
 
-bool FrameMaker::show(int level, const Image& image) {
+bool FrameMaker::show(int level, const ImageView& image) {
   publish_coarse(level, image);
   shown_level_ = level;
   {
@@ -153,7 +152,7 @@ bool FrameMaker::show(int level, const Image& image) {
   return !is_overtaken_();
 }
 
-void FrameMaker::publish_coarse(int level, const Image& image) {
+void FrameMaker::publish_coarse(int level, const ImageView& image) {
   const int stride = 1 << level;
   const std::vector<std::uint8_t> bytes = display_bytes(
       image, scene_->background.value_or(calm_background()), DisplayLayout::rgba, stride);

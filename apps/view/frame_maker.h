@@ -57,10 +57,10 @@ class FrameMaker {
   void start_phase(bool sampled, int levels);
   void measure(int level);
   bool tile_is_done(const TileResult& result);
-  bool level_is_done(int level, const Image& image);
+  bool level_is_done(int level, const ImageView& image);
   /// Publishes a complete level. Returns whether the frame goes on.
-  bool show(int level, const Image& image);
-  void publish_coarse(int level, const Image& image);
+  bool show(int level, const ImageView& image);
+  void publish_coarse(int level, const ImageView& image);
   void publish_exact(const Image& image, const RenderReport& report);
   Json header(const char* state, int stride) const;
   double seconds() const;

@@ -146,8 +146,8 @@ ProbeResult probe(Renderer& renderer, const Scene& scene, const Probe& at) {
   const CameraFrame<double> frame = make_camera_frame(scene.camera, scene.size);
   const Ray<double> ray = frame.ray_through(at.x * scene.size.width, at.y * scene.size.height);
   RenderOptions options;
-  options.depth = true;
-  const Image image = renderer.render(scene_of_ray(scene, ray), options);
+  options.outputs.depth = true;
+  const Image image = renderer.render(scene_of_ray(scene, ray), options).image;
   ProbeResult result;
   result.opacity = static_cast<double>(image.pixels.front()[3]);
   result.optical_depth = -std::log1p(-std::fmin(result.opacity, 1));

@@ -440,9 +440,9 @@ void Studio::move_camera(const std::function<void(Camera&)>& move) {
 void Studio::fit_camera(const std::string& side) {
   const Scene& scene = state_.scene();
   Camera camera = view_camera(visible_corners(scene, parallel_), side, scene.size);
-  RenderOptions options;
-  options.progress = [this](double) { return !has_ended(); };
-  camera = framed_camera(scene, camera, options);
+  FrameMonitor monitor;
+  monitor.progress = [this](double) { return !has_ended(); };
+  camera = framed_camera(scene, camera, {}, monitor);
   if (scene.camera.projection == Projection::orthographic) {
     set_projection(camera, Projection::orthographic, reach_of(scene));
   }
@@ -454,20 +454,20 @@ void Studio::save(PageId page, Save::Kind kind) {
     return send_file(page, {"scene.json", "application/json", state_.saved()});
   }
   RenderOptions options;
-  options.progress = [this](double) { return !has_ended(); };
+  options.monitor.progress = [this](double) { return !has_ended(); };
   if (kind == Save::Kind::png || kind == Save::Kind::png_with_color_bar) {
     std::vector<ColorBar> bars;
     if (kind == Save::Kind::png_with_color_bar) {
       bars = wanted_color_bars(state_.description(), state_.scene());
     }
     const std::optional<Image>& shown = frames_.exact_image();
-    Image image = shown ? *shown : frames_.renderer().render(state_.scene(), options);
+    Image image = shown ? *shown : frames_.renderer().render(state_.scene(), options).image;
     if (!bars.empty()) image = with_color_bars(image, bars);
     return send_file(page, png_file(image, shown_background(state_.description())));
   }
-  options.depth = true;
-  options.error = state_.scene().integration.method == Method::exact;
-  send_file(page, exr_file(frames_.renderer().render(state_.scene(), options)));
+  options.outputs.depth = true;
+  options.outputs.error = state_.scene().integration.method == Method::exact;
+  send_file(page, exr_file(frames_.renderer().render(state_.scene(), options).image));
 }
 
 }  // namespace pellucid::view

@@ -21,7 +21,7 @@ PageMessage thumbnail_message(const SceneState& state, const AskThumbnail& ask,
   preview.set_size(thumbnail_size);
   preview.set_tolerance(thumbnail_tolerance);
   const Scene& scene = preview.scene();
-  const Image image = renderer.render(scene);
+  const Image image = renderer.render(scene).image;
   const std::vector<std::uint8_t> bytes =
       display_bytes(image, scene.background.value_or(calm_background()), DisplayLayout::rgba);
   return binary_message({{"type", "thumbnail"},

@@ -59,7 +59,7 @@ Speed measure_speed(const scenes::NamedScene& named, const SpeedOptions& options
   speed.scene = named.name;
   speed.tolerance = scene.integration.tolerance;
   Turning turning(scene, options.device, options.threads);
-  const FirstFrame first = turning.first();
+  const RenderResult first = turning.first();
   const auto share = [&](std::uint64_t pixels) {
     return static_cast<double>(pixels) / static_cast<double>(first.report.pixels);
   };

@@ -19,9 +19,9 @@ Vec3<double> turned(const Vec3<double>& v, const Vec3<double>& up, double angle)
 }  // namespace
 
 Turning::Turning(const Scene& scene, Device device, int threads) : scene_(scene) {
-  options_.device = device;
-  options_.threads = threads;
-  first_.image = renderer_.render(scene_, options_, &first_.report);
+  options_.machine.device = device;
+  options_.machine.threads = threads;
+  first_ = renderer_.render(scene_, options_);
 }
 
 double Turning::frames_per_second(int frames, double longest) {

@@ -7,18 +7,13 @@
 
 namespace pellucid::bench {
 
-struct FirstFrame {
-  Image image;
-  RenderReport report;
-};
-
 /// A scene whose camera turns around its focal point, on a device that keeps its data.
 class Turning {
  public:
   /// Renders the first frame, which uploads the data.
   Turning(const Scene& scene, Device device, int threads);
 
-  const FirstFrame& first() const { return first_; }
+  const RenderResult& first() const { return first_; }
   /// Renders so many frames, each from another place, and returns how many there are in a second:
   /// by the median of their times, from the call to the image in the host's memory. After so many
   /// seconds it begins no new frame, if there are two.
@@ -28,7 +23,7 @@ class Turning {
   Scene scene_;
   RenderOptions options_;
   Renderer renderer_;
-  FirstFrame first_;
+  RenderResult first_;
 };
 
 }  // namespace pellucid::bench

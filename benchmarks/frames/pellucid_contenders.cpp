@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "benchmarks/frames/pellucid_contenders.h"
 
+#include <utility>
+
 #include "pellucid/cpu/render.h"
 
 namespace pellucid::bench {
@@ -8,10 +10,10 @@ namespace {
 
 TimedFrame timed_frame(const Scene& scene, int threads) {
   RenderOptions options;
-  options.threads = threads;
-  RenderReport report;
+  options.machine.threads = threads;
+  auto [image, report] = render(scene, options);
   TimedFrame frame;
-  frame.image = render(scene, options, &report);
+  frame.image = std::move(image);
   frame.seconds = report.seconds;
   frame.work = report.cells;
   return frame;

@@ -70,8 +70,8 @@ Scene scene_of(const Layer& layer, const Volume& volume, int size) {
 Image exact_picture(Scene scene, int threads) {
   scene.integration.tolerance = 1e-4;
   RenderOptions options;
-  options.threads = threads;
-  return render(scene, options);
+  options.machine.threads = threads;
+  return render(scene, options).image;
 }
 
 /// VTK's GPU mapper for a scene; prints why where there is none.
@@ -133,10 +133,10 @@ void compare_surface_with_vtk(const Subject& given, const FrameArguments& argume
   std::vector<Image> images(steps.size() + 1);
   std::vector<std::function<double()>> ways{[&] {
     RenderOptions options;
-    options.threads = arguments.threads;
-    RenderReport report;
-    images[0] = render(scene, options, &report);
-    return report.seconds;
+    options.machine.threads = arguments.threads;
+    RenderResult frame = render(scene, options);
+    images[0] = std::move(frame.image);
+    return frame.report.seconds;
   }};
   for (std::size_t i = 0; i < steps.size(); ++i) {
     ways.emplace_back([&, i] {

@@ -63,9 +63,9 @@ void measure(const Subject& subject, const Arguments& arguments) {
       scene.size = {arguments.size, arguments.size};
       scene.camera = default_camera(*subject.volume, scene.size);
       RenderOptions options;
-      options.threads = arguments.threads;
-      options.error = true;
-      render(scene, options, &reports[i]);
+      options.machine.threads = arguments.threads;
+      options.outputs.error = true;
+      reports[i] = render(scene, options).report;
       return reports[i].seconds;
     });
   }

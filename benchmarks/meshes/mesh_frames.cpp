@@ -21,10 +21,10 @@ MeshContender ours(const Scene& scene, const char* name, Grade grade, double tol
             one.integration.grade = grade;
             one.integration.tolerance = tolerance;
             RenderOptions options;
-            options.threads = threads;
-            RenderReport report;
+            options.machine.threads = threads;
+            auto [image, report] = render(one, options);
             TimedFrame frame;
-            frame.image = render(one, options, &report);
+            frame.image = std::move(image);
             frame.seconds = report.seconds;
             frame.work = report.cells;
             return frame;

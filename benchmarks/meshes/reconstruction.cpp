@@ -123,7 +123,7 @@ std::vector<ReconstructionResult> study_reconstruction(const ReconstructionOptio
       grid.integration.tolerance = tolerance;
       Scene cut = grid;
       cut.layers = {{MeshContent{mesh, test::volume_of(grid).transfer_function}}};
-      ReconstructionResult result = difference(render(grid), render(cut));
+      ReconstructionResult result = difference(render(grid).image, render(cut).image);
       result.data = data.name;
       result.transfer_function = narrow ? "peak, half width 1/200" : "ramp";
       results.push_back(std::move(result));

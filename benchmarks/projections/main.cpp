@@ -95,16 +95,15 @@ void compare(const std::string& name, const scenes::VolumePointer& volume,
              const Arguments& arguments) {
   const Scene scene = scene_of(volume, arguments.size);
   RenderOptions options;
-  options.threads = arguments.threads;
-  RenderReport report;
-  options.error = true;
-  const Image exact = render(scene, options, &report);
-  options.error = false;
+  options.machine.threads = arguments.threads;
+  options.outputs.error = true;
+  const auto [exact, report] = render(scene, options);
+  options.outputs.error = false;
   const std::vector<double> steps{1, 0.5, 0.25, 0.1, 0.05};
   const bench::VtkContenders vtk = bench::vtk_contenders(scene, steps, arguments.threads);
   std::vector<std::function<double()>> ways{[&] {
     RenderReport one;
-    render(scene, options, &one);
+    one = render(scene, options).report;
     return one.seconds;
   }};
   const bench::Contender* const fixed = vtk.list.empty() ? nullptr : vtk.list.data();
@@ -136,7 +135,7 @@ void compare(const std::string& name, const scenes::VolumePointer& volume,
     Scene other = scene;
     other.layers[0].projection = projection;
     RenderReport one;
-    render(other, options, &one);
+    one = render(other, options).report;
     std::printf("  pellucid, %-8s       %8.1f ms, %5.1f cells a ray\n",
                 (std::string(projection_name(projection)) + ":").c_str(), 1e3 * one.seconds,
                 static_cast<double>(one.cells) / static_cast<double>(one.rays));

@@ -65,14 +65,14 @@ void measure_setup(const std::shared_ptr<const Volume>& volume, int repeats,
   Renderer renderer;
   Scene scene = scene_of(volume, 16);
   RenderReport report;
-  renderer.render(scene, {}, &report);
+  report = renderer.render(scene).report;
   Milliseconds moved, changed;
   for (int i = 0; i < repeats; ++i) {
     move_camera(scene);
-    renderer.render(scene, {}, &report);
+    report = renderer.render(scene).report;
     moved.all.push_back(1e3 * report.setup_seconds);
     change_function(scene);
-    renderer.render(scene, {}, &report);
+    report = renderer.render(scene).report;
     changed.all.push_back(1e3 * report.setup_seconds);
   }
   moved.print((name + ": set-up, the camera moved").c_str());
@@ -84,7 +84,7 @@ void measure_waits(const std::shared_ptr<const Volume>& volume, int repeats, int
   Renderer renderer;
   Scene scene = scene_of(volume, size);
   RenderOptions options;
-  options.preview = 3;
+  options.monitor.preview = 3;
   renderer.render(scene, options);
   Milliseconds coarse, cancelled;
   for (int i = 0; i < repeats; ++i) {

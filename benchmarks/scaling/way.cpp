@@ -13,8 +13,8 @@ namespace {
 /// False where this version of render() has no such option.
 template <class Options>
 bool choose(Options& options, InstructionSet set) {
-  if constexpr (requires { options.instruction_set = set; }) {
-    options.instruction_set = set;
+  if constexpr (requires { options.machine.instruction_set = set; }) {
+    options.machine.instruction_set = set;
     return true;
   }
   return false;
@@ -47,10 +47,10 @@ double seconds_of_frame(const Scene& scene, const Integration& integration, int 
   Scene one = scene;
   one.integration = integration;
   RenderOptions options;
-  options.threads = threads;
+  options.machine.threads = threads;
   if (instruction_set) choose(options, *instruction_set);
   RenderReport local;
-  render(one, options, &local);
+  local = render(one, options).report;
   if (report != nullptr) *report = local;
   return local.seconds;
 }

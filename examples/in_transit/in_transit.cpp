@@ -134,13 +134,12 @@ void run(pellucid::Communicator& ranks, int steps, int steps_per_picture,
   Slab slab(ranks.rank(), ranks.size());
   const pellucid::BrickTree tree = bricks(ranks.size());
   pellucid::RenderOptions options;
-  options.threads = 1;
+  options.machine.threads = 1;
   for (int step = 0; step <= steps; ++step) {
     if (step % steps_per_picture == 0) {
       pellucid::Scene scene = scene_of(slab);
       pellucid::agree_on_ranges(ranks, {}, scene);
-      pellucid::RankReport report;
-      const pellucid::Image image = pellucid::render(ranks, tree, scene, options, &report);
+      const auto [image, report] = pellucid::render(ranks, tree, scene, options);
       if (ranks.rank() == 0) {
         const std::string file = prefix + std::to_string(step) + ".exr";
         pellucid::write_exr(image, file);

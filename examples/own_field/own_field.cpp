@@ -64,8 +64,7 @@ int main(int argc, char** argv) {
     scene.background = pellucid::calm_background();
     scene.camera.vertical_angle = 32;
     scene.size = {width, width * 3 / 4};
-    pellucid::RenderReport report;
-    const pellucid::Image image = pellucid::render(scene, {}, &report);
+    const auto [image, report] = pellucid::render(scene);
     pellucid::write_png(image, picture, scene.background);
     std::printf("%d particles, largest error %.2g of %.2g, %.1f s\n", count, report.largest_error,
                 scene.integration.tolerance, report.seconds);

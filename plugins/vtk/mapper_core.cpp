@@ -328,12 +328,11 @@ Image MapperCore::picture(const Scene& scene, vtkRenderer& renderer, double seco
     return picture_in_time(scene, renderer, seconds);
   }
   RenderOptions options;
-  options.threads = settings.threads;
-  RenderReport report;
-  Image image = renderer_.render(scene, options, &report);
-  moving_.note(false, report.seconds, static_cast<double>(report.pixels));
-  take(report);
-  return image;
+  options.machine.threads = settings.threads;
+  RenderResult done = renderer_.render(scene, options);
+  moving_.note(false, done.report.seconds, static_cast<double>(done.report.pixels));
+  take(done.report);
+  return std::move(done.image);
 }
 
 Image MapperCore::picture_in_time(const Scene& scene, vtkRenderer& renderer, double seconds) {
@@ -341,8 +340,8 @@ Image MapperCore::picture_in_time(const Scene& scene, vtkRenderer& renderer, dou
   const bool is_still = seconds >= still_seconds;
   const vtkSmartPointer<vtkRenderWindow> window(renderer.GetRenderWindow());
   RenderOptions options;
-  options.threads = settings.threads;
-  options.preview = preview_levels;
+  options.machine.threads = settings.threads;
+  options.monitor.preview = preview_levels;
   const double pixels = 1.0 * scene.size.width * scene.size.height;
   const double allowed = seconds * share_for_rays;
   const bool sampled = !is_still && moving_.are_sampled(pixels, allowed);
@@ -361,11 +360,10 @@ Image MapperCore::picture_in_time(const Scene& scene, vtkRenderer& renderer, dou
     }
     std::this_thread::sleep_for(std::chrono::microseconds(300));
   }
-  RenderReport report;
-  Image image = frame.wait(&report);
+  RenderResult done = frame.wait();
   moving_.note(sampled, seconds_since(start), pixels);
-  if (!sampled) take(report);
-  return image;
+  if (!sampled) take(done.report);
+  return std::move(done.image);
 }
 
 void MapperCore::take(const RenderReport& report) {
@@ -377,8 +375,8 @@ void MapperCore::take(const RenderReport& report) {
 void MapperCore::finish_picture(const Scene& scene, Image& image) {
   if (finish.shows_depths) {
     RenderOptions options;
-    options.threads = settings.threads;
-    const Image shape = shape_renderer_.render(shape_of(scene), options);
+    options.machine.threads = settings.threads;
+    const Image shape = shape_renderer_.render(shape_of(scene), options).image;
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
       const float sum = depth_of(image.pixels[i][3]), covered = shape.pixels[i][3];
       image.pixels[i] = {sum * covered, sum * covered, sum * covered, covered};

@@ -49,13 +49,13 @@ py::object render_on_ranks(const py::object& object, std::optional<int> handle,
                       vector_of(upper, "box: the upper corner")};
   }
   RenderOptions options;
-  options.depth = depth;
-  options.error = true;
-  options.values = values;
-  options.threads = checked_threads(threads);
+  options.outputs.depth = depth;
+  options.outputs.error = true;
+  options.outputs.values = values;
+  options.machine.threads = checked_threads(threads);
   std::exception_ptr raised;
   if (!progress.is_none()) {
-    options.progress = [&](double fraction) {
+    options.monitor.progress = [&](double fraction) {
       const py::gil_scoped_acquire acquired;
       try {
         progress(fraction);
@@ -72,16 +72,11 @@ py::object render_on_ranks(const py::object& object, std::optional<int> handle,
     const ReleasedLock released;
     const auto ranks = handle ? mpi_communicator(handle) : single_rank();
     is_first = ranks->rank() == 0;
-    RankReport report;
-    Image picture;
-    if (box) {
-      agree_on_ranges(*ranks, {}, scene);
-      picture = render(*ranks, tree_of(*ranks, *box), scene, options, &report);
-    } else {
-      picture = render(*ranks, scene, options, &report);
-    }
-    image.image = std::make_shared<const Image>(std::move(picture));
-    image.report = report.frame;
+    if (box) agree_on_ranges(*ranks, {}, scene);
+    RankResult frame = box ? render(*ranks, tree_of(*ranks, *box), scene, options)
+                           : render(*ranks, scene, options);
+    image.image = std::make_shared<const Image>(std::move(frame.image));
+    image.report = frame.report.frame;
   } catch (const Cancelled&) {
     if (raised) std::rethrow_exception(raised);
     throw;

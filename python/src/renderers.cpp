@@ -68,7 +68,9 @@ class FrameHandle {
     ImageHandle handle{nullptr, background_, tolerance_, {}, bars_};
     {
       const ReleasedLock released;
-      handle.image = std::make_shared<const Image>(frame_->wait(&handle.report));
+      RenderResult frame = frame_->wait();
+      handle.image = std::make_shared<const Image>(std::move(frame.image));
+      handle.report = std::move(frame.report);
     }
     image_ = handle;
     if (!progress.is_none()) progress(1.0);
@@ -104,11 +106,11 @@ struct RendererHandle {
 RenderOptions options_of(const Scene& scene, bool depth, bool error, bool values, int threads,
                          int preview) {
   RenderOptions options;
-  options.depth = depth;
-  options.error = error && scene.integration.method == Method::exact;
-  options.values = values;
-  options.threads = checked_threads(threads);
-  options.preview = preview;
+  options.outputs.depth = depth;
+  options.outputs.error = error && scene.integration.method == Method::exact;
+  options.outputs.values = values;
+  options.machine.threads = checked_threads(threads);
+  options.monitor.preview = preview;
   return options;
 }
 
@@ -175,11 +177,11 @@ ImageHandle render_share(RendererHandle& handle, const py::object& object, doubl
   }
   RenderOptions options = options_of(made.scene, depth, error, values, threads, 0);
   std::stop_source stop;
-  options.stop = stop.get_token();
+  options.monitor.stop = stop.get_token();
   std::atomic<double> fraction = 0;
   bool estimates = true;
   // How many frames it takes is not known: the last tenth waits for the last one.
-  options.progress = [&](double done) {
+  options.monitor.progress = [&](double done) {
     if (!estimates) fraction = std::max(fraction.load(), 0.9 * done);
     return !stop.stop_requested();
   };
@@ -188,14 +190,13 @@ ImageHandle render_share(RendererHandle& handle, const py::object& object, doubl
   std::optional<std::string> over;
   in_a_thread(
       [&] {
-        const double range = cli::estimate_range(made.scene, options);
+        const double range = cli::estimate_range(made.scene, options.machine, options.monitor);
         estimates = false;
-        cli::RelativePicture picture =
-            cli::render_relative(share, range, [&](double tolerance, RenderReport& report) {
-              made.scene.integration.set_tolerance(tolerance);
-              fit_opacity_tables(made.description, made.scene);
-              return handle.renderer->render(made.scene, options, &report);
-            });
+        cli::RelativePicture picture = cli::render_relative(share, range, [&](double tolerance) {
+          made.scene.integration.set_tolerance(tolerance);
+          fit_opacity_tables(made.description, made.scene);
+          return handle.renderer->render(made.scene, options);
+        });
         result.image = std::make_shared<const Image>(std::move(picture.image));
         result.report = picture.report;
         result.tolerance = made.scene.integration.tolerance;
@@ -217,12 +218,12 @@ ImageHandle reference_image(const py::object& object, bool depth, int threads,
   const PythonScene made = complete_python_scene(object);
   const Scene& scene = made.scene;
   RenderOptions options;
-  options.depth = depth;
-  options.threads = checked_threads(threads);
+  options.outputs.depth = depth;
+  options.machine.threads = checked_threads(threads);
   std::atomic<double> fraction = 0;
   std::stop_source stop;
-  options.stop = stop.get_token();
-  options.progress = [&](double done) {
+  options.monitor.stop = stop.get_token();
+  options.monitor.progress = [&](double done) {
     fraction = done;
     return !stop.stop_requested();
   };
@@ -230,8 +231,9 @@ ImageHandle reference_image(const py::object& object, bool depth, int threads,
   handle.bars = color_bars(made.description, scene);
   in_a_thread(
       [&] {
-        handle.image =
-            std::make_shared<const Image>(render_reference(scene, options, &handle.report));
+        RenderResult frame = render_reference(scene, options);
+        handle.image = std::make_shared<const Image>(std::move(frame.image));
+        handle.report = std::move(frame.report);
       },
       stop, [&] { return fraction.load(); }, progress);
   return handle;

@@ -174,8 +174,8 @@ Image final_image(const Scene& scene, const RenderOptions& options,
   image.height = scene.size.height;
   const std::size_t pixels = count_of(scene.size);
   image.pixels.resize(pixels);
-  if (options.depth) image.depth.resize(pixels);
-  if (options.error) {
+  if (options.outputs.depth) image.depth.resize(pixels);
+  if (options.outputs.error) {
     image.error.resize(pixels);
     image.proved.resize(pixels);
   }
@@ -188,8 +188,8 @@ Image final_image(const Scene& scene, const RenderOptions& options,
     for (std::size_t c = 0; c < 4; ++c) {
       image.pixels[index][c] = static_cast<float>(pixel.color[c]);
     }
-    if (options.depth) image.depth[index] = static_cast<float>(pixel.depth);
-    if (options.error) {
+    if (options.outputs.depth) image.depth[index] = static_cast<float>(pixel.depth);
+    if (options.outputs.error) {
       image.error[index] = float_above(pixel.error);
       image.proved[index] = pixel.proved ? 1 : 0;
     }

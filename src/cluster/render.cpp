@@ -52,17 +52,17 @@ void check_frame(Communicator& ranks, const BrickTree& tree, const Scene& scene,
       for (int a = 0; a < 3; ++a) sum.add(corner[a]);
     }
   }
-  check_equal(
-      ranks,
-      {{"the size of the picture", std::to_string(scene.size.width) + "x" +
-                                       std::to_string(scene.size.height) + ", " +
-                                       std::to_string(scene.samples) + " samples"},
-       {"the tolerance", text(scene.integration.tolerance)},
-       {"the camera", view + text(camera.vertical_angle) + " " + text(camera.parallel_scale)},
-       {"the number of layers and the largest color",
-        std::to_string(scene.layers.size()) + ", " + text(largest_color(scene)) +
-            (options.depth ? ", with depth" : "") + (options.values ? ", with values" : "")},
-       {"the bricks' checksum", std::to_string(sum.value())}});
+  check_equal(ranks, {{"the size of the picture", std::to_string(scene.size.width) + "x" +
+                                                      std::to_string(scene.size.height) + ", " +
+                                                      std::to_string(scene.samples) + " samples"},
+                      {"the tolerance", text(scene.integration.tolerance)},
+                      {"the camera",
+                       view + text(camera.vertical_angle) + " " + text(camera.parallel_scale)},
+                      {"the number of layers and the largest color",
+                       std::to_string(scene.layers.size()) + ", " + text(largest_color(scene)) +
+                           (options.outputs.depth ? ", with depth" : "") +
+                           (options.outputs.values ? ", with values" : "")},
+                      {"the bricks' checksum", std::to_string(sum.value())}});
 }
 
 /// Returns the most bricks that rays of the frame meet, as every fourth tells; at least 1. What a
@@ -125,12 +125,12 @@ RenderOptions options_of_part(const BrickTree& tree, const RenderOptions& option
   };
   if (!tree.is_on_grid()) region.corners.reset();
   RenderOptions own = options;
-  own.region = std::make_shared<const RayRegion>(std::move(region));
-  own.error = true;
-  own.depth = false;
-  own.preview = 0;
-  own.tile = nullptr;
-  own.progress = [&](double fraction) { return watch.tell(fraction); };
+  own.outputs.region = std::make_shared<const RayRegion>(std::move(region));
+  own.outputs.error = true;
+  own.outputs.depth = false;
+  own.monitor.preview = 0;
+  own.monitor.tile = nullptr;
+  own.monitor.progress = [&](double fraction) { return watch.tell(fraction); };
   return own;
 }
 
@@ -146,15 +146,15 @@ void check_shared_data(const Scene& scene) {
 
 }  // namespace
 
-Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
-             const RenderOptions& options, RankReport* report) {
+RankResult render(Communicator& ranks, const BrickTree& tree, const Scene& own,
+                  const RenderOptions& options) {
   const Stopwatch whole;
   const int rank = ranks.rank();
   check_equal(ranks, "the version", PELLUCID_VERSION_STRING);
   agreed(ranks, [&] {
     check_shared_data(own);
     check_integration(own);
-    if (options.values) check_values(own);
+    if (options.outputs.values) check_values(own);
     if (tree.count() != ranks.size()) {
       throw Error("bricks: there are " + std::to_string(tree.count()) + " for " +
                   std::to_string(ranks.size()) + " ranks; give one for each");
@@ -163,7 +163,7 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
   check_frame(ranks, tree, own, options);
 
   RankReport told;
-  FrameWatch watch(ranks, options.progress);
+  FrameWatch watch(ranks, options.monitor.progress);
   Scene rays;
   std::vector<RayPixel> pixels, own_pixels;
   std::vector<ProjectedRays> values;  // of projected layers
@@ -180,8 +180,12 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
         static_cast<std::size_t>(rays.size.width) * static_cast<std::size_t>(rays.size.height);
     const Scene all = rays;
     std::erase_if(rays.layers, [](const Layer& layer) { return layer.projection.has_value(); });
-    pixels = rays.layers.empty() ? std::vector<RayPixel>(count)
-                                 : to_ray_pixels(renderer.render(rays, part_options, &told.frame));
+    pixels.resize(count);
+    if (!rays.layers.empty()) {
+      const RenderResult part = renderer.render(rays, part_options);
+      pixels = to_ray_pixels(part.image);
+      told.frame = part.report;
+    }
     for (std::size_t i = 0; i < all.layers.size(); ++i) {
       if (!all.layers[i].visible || !all.layers[i].projection) continue;
       values.push_back(project_layer(all, i, part_options));
@@ -203,7 +207,7 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
     agreed(ranks, [&] {
       if (rank == 0) over = rays_over_tolerance(own, pixels);
     });
-    part_options.progress = [&](double) { return watch.tell(1); };
+    part_options.monitor.progress = [&](double) { return watch.tell(1); };
     told.parts_again = look_again(
         ranks, {tree, renderer, rays, part_options, place, told.most_bricks, own_part, pixels},
         over, [&](const std::function<void()>& work) {
@@ -212,8 +216,8 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
         });
   }
   std::vector<float> depth;
-  if (options.depth && rays.layers.empty()) depth.assign(pixels.size(), INFINITY);
-  if (options.depth && !rays.layers.empty())
+  if (options.outputs.depth && rays.layers.empty()) depth.assign(pixels.size(), INFINITY);
+  if (options.outputs.depth && !rays.layers.empty())
     depth = half_depths(ranks, place, rays, part_options, pixels, own_part);
   add_up(ranks, told.frame);
   told.render_seconds = gather_numbers(ranks, render_seconds);
@@ -224,23 +228,21 @@ Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
     if (rank != 0) return;
     if (!values.empty()) put_projections_over(own, values, pixels);
     image = final_image(own, options, pixels, depth, told.frame);
-    if (!options.values) return;
+    if (!options.outputs.values) return;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       image.values.push_back(static_cast<float>(values.back().at(i).value));
     }
   });
   told.frame.seconds = whole.seconds();
-  if (report != nullptr) *report = std::move(told);
-  return image;
+  return {std::move(image), std::move(told)};
 }
 
-Image render(Communicator& ranks, const Scene& whole, const RenderOptions& options,
-             RankReport* report) {
+RankResult render(Communicator& ranks, const Scene& whole, const RenderOptions& options) {
   agreed(ranks, [&] { check_shared_data(whole); });
   const SceneFrame frame = frame_of(whole);
   const BrickTree tree =
       BrickTree::split(frame.world_from_frame, frame.bounds, ranks.size(), {}, frame.on_grid);
-  return render(ranks, tree, whole, options, report);
+  return render(ranks, tree, whole, options);
 }
 
 }  // namespace pellucid

@@ -134,8 +134,8 @@ class SecondLook {
     }
     together_([&] {
       if (requests.empty()) return;
-      const std::vector<RayPixel> found = to_ray_pixels(
-          parts_.renderer.render_pixels(parts_.rays, parts_.options, requests, nullptr));
+      const std::vector<RayPixel> found =
+          to_ray_pixels(parts_.renderer.render_pixels(parts_.rays, parts_.options, requests).image);
       for (std::size_t i = 0; i < of.size(); ++i) {
         RayPixel& own = parts_.own[of[i]];
         if (found[i].error < own.error) own = found[i];

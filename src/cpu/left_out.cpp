@@ -117,7 +117,8 @@ std::string reason_for_cpu(const Frame&, const RenderOptions&) {
   return "";
 }
 
-void render_on_device(const Frame&, const RenderOptions&, KeptDevice&, Image&, RenderReport&) {
+void render_on_device(const Frame&, const RenderOptions&, KeptDevice&, const ImageView&,
+                      RenderReport&) {
   throw left_out("what renders on devices");
 }
 

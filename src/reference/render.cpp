@@ -81,11 +81,12 @@ void render_row(const reference::CameraRays& camera, int samples,
 
 }  // namespace
 
-Image render_reference(const Scene& scene, const RenderOptions& options, RenderReport* report) {
+RenderResult render_reference(const Scene& scene, const RenderOptions& options) {
   check_data(scene);
-  if (options.threads < 0) throw Error("threads: must not be negative; 0 takes one per core");
+  if (options.machine.threads < 0)
+    throw Error("threads: must not be negative; 0 takes one per core");
   check_integration(scene);
-  if (options.values) check_values(scene);
+  if (options.outputs.values) check_values(scene);
   make_camera_frame(scene.camera, scene.size);  // For its checks; the rays are made here.
 
   const reference::CameraRays camera(scene.camera, scene.size);
@@ -97,11 +98,12 @@ Image render_reference(const Scene& scene, const RenderOptions& options, RenderR
   const auto pixels =
       static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   image.pixels.resize(pixels);
-  if (options.depth) image.depth.resize(pixels);
-  if (options.values) image.values.resize(pixels);
+  if (options.outputs.depth) image.depth.resize(pixels);
+  if (options.outputs.values) image.values.resize(pixels);
 
   RenderReport local;
-  local.threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  local.threads =
+      options.machine.threads > 0 ? options.machine.threads : tbb::info::default_concurrency();
   local.rays = pixels * static_cast<std::uint64_t>(scene.samples * scene.samples);
   const auto start = std::chrono::steady_clock::now();
 
@@ -127,8 +129,8 @@ Image render_reference(const Scene& scene, const RenderOptions& options, RenderR
             cells += row_cells;
             const std::lock_guard lock(progress_mutex);
             ++rows_done;
-            if (cancelled || !options.progress) continue;
-            if (!options.progress(static_cast<double>(rows_done) / image.height)) {
+            if (cancelled || !options.monitor.progress) continue;
+            if (!options.monitor.progress(static_cast<double>(rows_done) / image.height)) {
               cancelled = true;
               context.cancel_group_execution();
             }
@@ -140,8 +142,7 @@ Image render_reference(const Scene& scene, const RenderOptions& options, RenderR
 
   local.cells = cells;
   local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (report != nullptr) *report = local;
-  return image;
+  return {std::move(image), std::move(local)};
 }
 
 }  // namespace pellucid

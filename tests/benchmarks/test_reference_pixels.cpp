@@ -33,7 +33,7 @@ TEST(ReferencePixels, AreThoseOfTheReferenceImage) {
   Scene scene = scenes::make_scene(scenes::builtin("marschner_lobb", 17), scenes::band_transfer(),
                                    scenes::view_camera(scenes::View::oblique), {12, 9});
   scene.samples = 2;
-  const Image image = render_reference(scene);
+  const Image image = render_reference(scene).image;
   const ReferencePixels pixels = reference_pixels(scene, 40, 2, {});
   ASSERT_EQ(pixels.value.size(), 40U);
   EXPECT_LT(error_of(image, pixels).largest, 1.2e-7);  // the image is rounded to float

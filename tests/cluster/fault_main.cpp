@@ -24,8 +24,8 @@ void render_long(Communicator& ranks, const std::function<bool(double)>& progres
   Scene scene = cluster_tests::rank_scenes(size)[1].scene;
   scene.integration.tolerance = 1e-6;
   RenderOptions options;
-  options.threads = 1;
-  options.progress = progress;
+  options.machine.threads = 1;
+  options.monitor.progress = progress;
   render(ranks, scene, options);
 }
 

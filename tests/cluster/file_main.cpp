@@ -241,13 +241,13 @@ bool is_good(Communicator& ranks, const fs::path& file, BrickBalance balance) {
     right = false;
   }
   RenderOptions options;
-  options.error = true;
-  options.threads = 1;
-  const Image image = render(ranks, bricks.tree, bricks.scene, options);
+  options.outputs.error = true;
+  options.machine.threads = 1;
+  const Image image = render(ranks, bricks.tree, bricks.scene, options).image;
   if (ranks.rank() == 0) {
     Scene whole = make_scene(description);
     whole.camera = bricks.scene.camera;
-    const Image alone = render(whole, options), truth = render_reference(whole);
+    const Image alone = render(whole, options).image, truth = render_reference(whole).image;
     for (const Image* const other : {&alone, &truth}) {
       const auto check = check_errors(image, *other);
       if (check && check->over == 0) continue;

@@ -78,10 +78,9 @@ std::size_t far_depths(const Image& a, const Image& b) {
 /// Returns whether the ranks' picture is right.
 bool is_right(const Scene& scene, const Image& image, const RankReport& report, bool is_hard) {
   RenderOptions options;
-  options.error = options.depth = true;
-  RenderReport alone_report;
-  const Image alone = render(scene, options, &alone_report);
-  const Image truth = render_reference(scene);
+  options.outputs.error = options.outputs.depth = true;
+  const auto [alone, alone_report] = render(scene, options);
+  const Image truth = render_reference(scene).image;
   std::size_t wrong = wrong_pixels(image, truth, "the reference");
   wrong += wrong_pixels(image, alone, "the picture of one process");
   wrong += far_depths(image, alone);
@@ -125,14 +124,13 @@ int run(Communicator& ranks, const Wanted& wanted) {
     Scene scene = made;
     if (!is_hard) scene.integration.tolerance = wanted.tolerance;
     RenderOptions options;
-    options.error = options.depth = true;
-    options.threads = 1;
+    options.outputs.error = options.outputs.depth = true;
+    options.machine.threads = 1;
     const SceneFrame frame = frame_of(scene);
     BrickTree tree =
         BrickTree::split(frame.world_from_frame, frame.bounds, ranks.size(), {}, frame.on_grid);
     if (faces) tree = with_faces_on_values(tree);
-    RankReport report;
-    const Image image = render(ranks, tree, sub_scene(scene, tree, ranks.rank()), options, &report);
+    const auto [image, report] = render(ranks, tree, sub_scene(scene, tree, ranks.rank()), options);
     bool right = true;
     if (ranks.rank() == 0) {
       right = is_right(scene, image, report, is_hard);

@@ -87,9 +87,9 @@ TEST(RenderPixels, AreThoseOfTheFrame) {
     RayRegion region = tree.region(brick);
     region.allowance = [](const Ray<double>&) { return 0.5; };
     RenderOptions options;
-    options.error = true;
-    options.region = std::make_shared<const RayRegion>(region);
-    const Image frame = renderer.render(scene, options);
+    options.outputs.error = true;
+    options.outputs.region = std::make_shared<const RayRegion>(region);
+    const Image frame = renderer.render(scene, options).image;
     std::vector<PixelRequest> same, finer;
     for (int row = 0; row < 26; row += 3) {
       for (int column = 0; column < 30; column += 2) {
@@ -97,8 +97,8 @@ TEST(RenderPixels, AreThoseOfTheFrame) {
         finer.push_back({column, row, 0.02});
       }
     }
-    const Image again = renderer.render_pixels(scene, options, same);
-    const Image better = renderer.render_pixels(scene, options, finer);
+    const Image again = renderer.render_pixels(scene, options, same).image;
+    const Image better = renderer.render_pixels(scene, options, finer).image;
     std::size_t seen = 0;
     for (std::size_t i = 0; i < same.size(); ++i) {
       const auto at = static_cast<std::size_t>(same[i].row * 30 + same[i].column);

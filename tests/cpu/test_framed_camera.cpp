@@ -42,7 +42,7 @@ struct Part {
 };
 Part seen_in(const Scene& scene) {
   Part part;
-  const Image image = render(scene);
+  const Image image = render(scene).image;
   for (int row = 0; row < image.height; ++row) {
     for (int column = 0; column < image.width; ++column) {
       if (image.at(column, row)[3] < 0.05F) continue;
@@ -161,9 +161,9 @@ TEST(FramedCamera, StaysWhereNothingIsSeen) {
 
 TEST(FramedCamera, CanBeCancelled) {
   const Scene scene = scene_of(sphere(33), {64, 64});
-  RenderOptions options;
-  options.progress = [](double) { return false; };
-  EXPECT_THROW(framed_camera(scene, scene.camera, options), Cancelled);
+  FrameMonitor monitor;
+  monitor.progress = [](double) { return false; };
+  EXPECT_THROW(framed_camera(scene, scene.camera, {}, monitor), Cancelled);
 }
 
 }  // namespace

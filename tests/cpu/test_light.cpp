@@ -46,9 +46,9 @@ Scene seen(Layer layer, double tolerance = 1e-5) {
 
 std::array<double, 4> pixel(const Scene& scene, bool* said = nullptr) {
   RenderOptions options;
-  options.error = true;
-  options.threads = 1;
-  const Image image = render(scene, options);
+  options.outputs.error = true;
+  options.machine.threads = 1;
+  const Image image = render(scene, options).image;
   if (said != nullptr) {
     *said = std::ranges::all_of(image.error, [&](float error) {
       return static_cast<double>(error) <= scene.integration.tolerance;
@@ -162,8 +162,8 @@ TEST(Light, AnOpaqueSurfaceEndsTheRayAndHasItsDepth) {
   layer.shading = Shading{0.3, 0.5, 0, 1, GradientKind::smooth, 0};
   const Scene scene = seen(layer);
   RenderOptions options;
-  options.depth = true;
-  const Image image = render(scene, options);
+  options.outputs.depth = true;
+  const Image image = render(scene, options).image;
   EXPECT_NEAR(static_cast<double>(image.at(1, 1)[1]), 0.8, 1e-6);
   EXPECT_EQ(image.at(1, 1)[0], 0);
   EXPECT_EQ(image.at(1, 1)[3], 1);

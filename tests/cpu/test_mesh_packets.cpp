@@ -104,10 +104,12 @@ Scene scene_of(std::shared_ptr<const MeshChannels> mesh, bool jump = false) {
 
 Image rendered(const Scene& scene, InstructionSet set, RenderReport& report, int threads = 0) {
   RenderOptions options;
-  options.instruction_set = set;
-  options.error = true;
-  options.threads = threads;
-  return render(scene, options, &report);
+  options.machine.instruction_set = set;
+  options.outputs.error = true;
+  options.machine.threads = threads;
+  RenderResult frame = render(scene, options);
+  report = std::move(frame.report);
+  return std::move(frame.image);
 }
 
 /// Pixels are as near to those of rays in double as both say; none is over the tolerance.

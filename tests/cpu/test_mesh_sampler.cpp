@@ -36,9 +36,9 @@ Scene scene_of(MeshChannelsPointer mesh) {
 Image image_of(Scene scene, Method method, bool depth = false) {
   scene.integration.method = method;
   RenderOptions options;
-  options.threads = 1;
-  options.depth = depth;
-  return render(scene, options);
+  options.machine.threads = 1;
+  options.outputs.depth = depth;
+  return render(scene, options).image;
 }
 
 struct Difference {
@@ -236,8 +236,8 @@ TEST(MeshSampler, NothingIsSaidOfTheError) {
   test::mesh_of(scene).transfer_function = points_at_layers();
   scene.integration.method = Method::linear;
   RenderOptions options;
-  options.error = true;
-  const Image image = render(scene, options);
+  options.outputs.error = true;
+  const Image image = render(scene, options).image;
   for (const float error : image.error) EXPECT_GE(error, 1);
   for (const auto proved : image.proved) EXPECT_EQ(proved, 0);
 }

@@ -86,7 +86,7 @@ std::uint64_t steps_of(Scene scene) {
       test::channels_of(scene).channels->count(), std::vector<GaussianPrimitive>{},
       std::vector<ChannelTransferFunction>{{0, TransferFunction({{0, 1e-6, {1, 1, 1}}})}});
   RenderReport report;
-  render(scene, {}, &report);
+  report = render(scene).report;
   return report.cells;
 }
 
@@ -95,27 +95,26 @@ void expect_same_in_packets(Scene scene, bool skips, const std::string& what) {
   for (const double step : {0.3, 1.0, 3.5, 9.0}) {
     scene.integration.step = step;
     RenderOptions options;
-    options.instruction_set = InstructionSet::scalar;
-    RenderReport one, packets;
+    options.machine.instruction_set = InstructionSet::scalar;
     const std::uint64_t steps = skips ? steps_of(scene) : 0;
-    const Image scalar = render(scene, options, &one);
+    const auto [scalar, one] = render(scene, options);
     EXPECT_GT(
         *std::max_element(scalar.pixels[15 * 37 + 18].begin(), scalar.pixels[15 * 37 + 18].end()),
         0.05f)
         << what << ": shows something";
     for (const InstructionSet set : packet_sets) {
       if (!test::runs_here(set)) continue;
-      options.instruction_set = set;
-      const Image image = render(scene, options, &packets);
+      options.machine.instruction_set = set;
+      const auto [image, packets] = render(scene, options);
       const std::string where = what + ", step " + std::to_string(step) + ", " + name_of(set);
       EXPECT_LE(difference(scalar, image), 1e-5f) << where;
       EXPECT_GT(packets.cells, 0u) << where;
       if (skips) {
         EXPECT_LT(packets.cells, steps * 9 / 10) << where;
       }
-      options.threads = 1;
-      EXPECT_EQ(image.pixels, render(scene, options).pixels) << where;
-      options.threads = 0;
+      options.machine.threads = 1;
+      EXPECT_EQ(image.pixels, render(scene, options).image.pixels) << where;
+      options.machine.threads = 0;
     }
   }
 }
@@ -186,20 +185,20 @@ TEST(MultivariateSampler, LeavesWhatItCannotDoToTheScalarSampler) {
                          {primitive({0}, {0.5}, {1e-5}, 5000, {1, 1, 1})});
   scene.integration.step = 0.5;
   RenderOptions options;
-  const Image best = render(scene, options);
-  options.instruction_set = InstructionSet::scalar;
-  EXPECT_EQ(best.pixels, render(scene, options).pixels);
+  const Image best = render(scene, options).image;
+  options.machine.instruction_set = InstructionSet::scalar;
+  EXPECT_EQ(best.pixels, render(scene, options).image.pixels);
   // Depth, and double precision.
   scene = scene_of({channel<float>(0, 1, Centering::point)},
                    {primitive({0}, {0.5}, {0.2}, 5, {1, 1, 1})});
   scene.integration.precision = Precision::float64;
-  EXPECT_EQ(render(scene, {}).pixels, render(scene, options).pixels);
+  EXPECT_EQ(render(scene, {}).image.pixels, render(scene, options).image.pixels);
   scene.integration.precision = Precision::automatic;
   RenderOptions deep;
-  deep.depth = true;
-  const Image with_depth = render(scene, deep);
-  deep.instruction_set = InstructionSet::scalar;
-  EXPECT_EQ(with_depth.depth, render(scene, deep).depth);
+  deep.outputs.depth = true;
+  const Image with_depth = render(scene, deep).image;
+  deep.machine.instruction_set = InstructionSet::scalar;
+  EXPECT_EQ(with_depth.depth, render(scene, deep).image.depth);
 }
 
 }  // namespace

@@ -127,9 +127,9 @@ TEST(OwnField, IsTheIntegralOfItsDensity) {
       scene.integration.tolerance = tolerance;
       for (const bool one_by_one : {true, false}) {
         RenderOptions options;
-        options.error = true;
-        if (one_by_one) options.instruction_set = InstructionSet::scalar;
-        const Image image = render(scene, options);
+        options.outputs.error = true;
+        if (one_by_one) options.machine.instruction_set = InstructionSet::scalar;
+        const Image image = render(scene, options).image;
         for (std::size_t i = 0; i < truth.size(); ++i) {
           EXPECT_LE(image.error[i], tolerance * 1.001);
           const double off = double{image.error[i]} + 1e-6;

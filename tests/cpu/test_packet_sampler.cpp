@@ -70,7 +70,7 @@ std::uint64_t steps_of(Scene scene) {
   test::volume_of(scene).transfer_function = std::make_shared<TransferFunction>(
       std::vector<TransferFunction::Point>{{0, 1e-6, {1, 1, 1}}});
   RenderReport report;
-  render(scene, {}, &report);
+  report = render(scene).report;
   return report.cells;
 }
 
@@ -81,14 +81,13 @@ void expect_same_in_packets(Scene scene, bool skips, const std::string& what) {
       scene.integration.method = method;
       scene.integration.step = step;
       RenderOptions options;
-      options.instruction_set = InstructionSet::scalar;
-      RenderReport one, packets;
+      options.machine.instruction_set = InstructionSet::scalar;
       const std::uint64_t steps = skips ? steps_of(scene) : 0;
-      const Image scalar = render(scene, options, &one);
+      const auto [scalar, one] = render(scene, options);
       for (const InstructionSet set : packet_sets) {
         if (!test::runs_here(set)) continue;
-        options.instruction_set = set;
-        const Image image = render(scene, options, &packets);
+        options.machine.instruction_set = set;
+        const auto [image, packets] = render(scene, options);
         const std::string where = what + ", " + std::string(method_name(method)) + ", step " +
                                   std::to_string(step) + ", " + name_of(set);
         EXPECT_LE(difference(scalar, image), 1e-5f) << where;
@@ -165,15 +164,15 @@ TEST(Preintegrated, IsExactOnLinearDataUpToItsTable) {
       std::make_shared<TransferFunction>(std::vector<TransferFunction::Point>{
           {0.4, 0, {1, 0.5, 0.25}}, {0.43, 60, {1, 0.5, 0.25}}, {0.46, 0, {1, 0.5, 0.25}}});
   scene.integration.tolerance = 1e-6;
-  const Image exact = render(scene);
+  const Image exact = render(scene).image;
   scene.integration.step = 4;
   scene.integration.method = Method::midpoint;
-  EXPECT_GT(difference(render(scene), exact), 0.1f);
+  EXPECT_GT(difference(render(scene).image, exact), 0.1f);
   scene.integration.method = Method::preintegrated;
   for (const InstructionSet set : {InstructionSet::scalar, packets}) {
     RenderOptions options;
-    options.instruction_set = set;
-    EXPECT_LT(difference(render(scene, options), exact), 3e-3f) << name_of(set);
+    options.machine.instruction_set = set;
+    EXPECT_LT(difference(render(scene, options).image, exact), 3e-3f) << name_of(set);
   }
 }
 
@@ -185,23 +184,23 @@ TEST(Preintegrated, SeesTheAbsorptionInsideOfAStep) {
   test::volume_of(scene).transfer_function = std::make_shared<TransferFunction>(
       std::vector<TransferFunction::Point>{{0.0, 20, {1, 0, 0}}, {1.0, 20, {0, 0, 1}}});
   scene.integration.tolerance = 1e-6;
-  const Image exact = render(scene);
+  const Image exact = render(scene).image;
   scene.integration.method = Method::preintegrated;
   scene.integration.step = 8;
-  EXPECT_LT(difference(render(scene), exact), 1e-2f);
+  EXPECT_LT(difference(render(scene).image, exact), 1e-2f);
 }
 
 TEST(Preintegrated, ErrorFallsWithTheStep) {
   Scene scene = scene_of(sampled<float>({45, 38, 51}, Centering::point, 1, ball), 1);
   scene.integration.tolerance = 1e-6;
-  const Image exact = render(scene);
+  const Image exact = render(scene).image;
   scene.integration.method = Method::preintegrated;
   for (const Precision precision : {Precision::automatic, Precision::float64}) {
     scene.integration.precision = precision;
     float last = 1;
     for (const double step : {4.0, 1.0, 0.25}) {
       scene.integration.step = step;
-      const float error = difference(render(scene), exact);
+      const float error = difference(render(scene).image, exact);
       EXPECT_LT(error, 0.5f * last) << step;
       last = error;
     }

@@ -37,20 +37,18 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
 TEST(Preview, LeavesTheSameBitsForAnyNumberOfThreads) {
   Scene scene = scene_of_tiles();
   RenderOptions options;
-  options.depth = options.error = true;
+  options.outputs.depth = options.outputs.error = true;
   for (const Method method : {Method::exact, Method::simpson}) {
     scene.integration.method = method;
-    options.threads = 1;
-    options.preview = 0;
-    RenderReport plain_report;
-    const Image plain = render(scene, options, &plain_report);
+    options.machine.threads = 1;
+    options.monitor.preview = 0;
+    const auto [plain, plain_report] = render(scene, options);
     for (const int preview : {0, 1, 3, largest_preview}) {
       for (const int threads : {1, 2, 3, 7}) {
         SCOPED_TRACE(std::to_string(preview) + " levels, " + std::to_string(threads) + " threads");
-        options.preview = preview;
-        options.threads = threads;
-        RenderReport report;
-        const Image image = render(scene, options, &report);
+        options.monitor.preview = preview;
+        options.machine.threads = threads;
+        const auto [image, report] = render(scene, options);
         EXPECT_EQ(plain.pixels, image.pixels);
         EXPECT_TRUE(same_bits(plain.depth, image.depth));
         EXPECT_TRUE(same_bits(plain.error, image.error));
@@ -69,19 +67,19 @@ TEST(Preview, TilesAreToldOnceFinalAndInTheImage) {
     for (const int threads : {1, 2, 7}) {
       SCOPED_TRACE(std::to_string(preview) + " levels, " + std::to_string(threads) + " threads");
       RenderOptions options;
-      options.preview = preview;
-      options.threads = threads;
+      options.monitor.preview = preview;
+      options.machine.threads = threads;
       std::vector<int> told(83 * 61, 0);
       std::vector<std::array<float, 4>> seen(told.size());
       const std::array<float, 4>* memory = nullptr;
       std::atomic<int> inside{0};
       int last_level = preview;
-      options.tile = [&](const TileResult& result) {
+      options.monitor.tile = [&](const TileResult& result) {
         EXPECT_EQ(++inside, 1);
         const Tile& tile = result.tile;
         EXPECT_LE(tile.level, last_level);
         last_level = tile.level;
-        memory = result.image.pixels.data();
+        memory = result.image.pixels;
         for (int j = 0; j < tile.rows; ++j) {
           for (int i = 0; i < tile.columns; ++i) {
             const int column = tile.column + i * tile.stride, row = tile.row + j * tile.stride;
@@ -93,12 +91,12 @@ TEST(Preview, TilesAreToldOnceFinalAndInTheImage) {
         --inside;
         return true;
       };
-      options.progress = [&](double) {
+      options.monitor.progress = [&](double) {
         EXPECT_EQ(++inside, 1);
         --inside;
         return true;
       };
-      const Image image = render(scene, options);
+      const Image image = render(scene, options).image;
       EXPECT_EQ(told, std::vector<int>(told.size(), 1));
       EXPECT_EQ(seen, image.pixels);
       EXPECT_EQ(memory, image.pixels.data());
@@ -111,10 +109,10 @@ TEST(Cancellation, NothingIsToldAfterwards) {
   for (const int threads : {1, 2, 7}) {
     for (const int last : {1, 5, 24}) {
       RenderOptions options;
-      options.threads = threads;
+      options.machine.threads = threads;
       int tiles = 0, shares = 0;
-      options.tile = [&](const TileResult&) { return ++tiles < last; };
-      options.progress = [&](double) {
+      options.monitor.tile = [&](const TileResult&) { return ++tiles < last; };
+      options.monitor.progress = [&](double) {
         EXPECT_LT(tiles, last);
         ++shares;
         return true;
@@ -123,9 +121,9 @@ TEST(Cancellation, NothingIsToldAfterwards) {
       EXPECT_EQ(tiles, last) << threads << " threads";
       EXPECT_LT(shares, last);
 
-      options.tile = {};
+      options.monitor.tile = {};
       shares = 0;
-      options.progress = [&](double) { return ++shares < 2; };
+      options.monitor.progress = [&](double) { return ++shares < 2; };
       EXPECT_THROW(render(scene, options), Cancelled) << threads << " threads";
       EXPECT_EQ(shares, 2) << threads << " threads";
     }
@@ -136,8 +134,10 @@ TEST(Cancellation, AnExceptionOfTheCallerComesOut) {
   const Scene scene = scene_of_tiles();
   for (const int threads : {1, 3}) {
     RenderOptions options;
-    options.threads = threads;
-    options.tile = [](const TileResult&) -> bool { throw std::logic_error("the viewer's"); };
+    options.machine.threads = threads;
+    options.monitor.tile = [](const TileResult&) -> bool {
+      throw std::logic_error("the viewer's");
+    };
     EXPECT_THROW(render(scene, options), std::logic_error);
   }
 }
@@ -145,7 +145,7 @@ TEST(Cancellation, AnExceptionOfTheCallerComesOut) {
 TEST(Preview, LevelsOutOfRangeAreRefused) {
   RenderOptions options;
   for (const int preview : {-1, largest_preview + 1}) {
-    options.preview = preview;
+    options.monitor.preview = preview;
     EXPECT_THROW(render(scene_of_tiles(), options), Error) << preview;
   }
 }

@@ -53,9 +53,9 @@ struct Seen {
 
 Seen see(const Scene& scene) {
   RenderOptions options;
-  options.values = options.error = true;
-  options.threads = 1;
-  const Image image = render(scene, options);
+  options.outputs.values = options.outputs.error = true;
+  options.machine.threads = 1;
+  const Image image = render(scene, options).image;
   const auto& p = image.pixels[0];
   EXPECT_EQ(image.proved[0], 1);
   return {static_cast<double>(image.values[0]),
@@ -209,7 +209,7 @@ TEST(Projections, LieOverEverythingElseInTheOrderOfTheList) {
   const Layer red = tinted({1, 0, 0}, 0.25), blue = tinted({0, 0, 1}, 0.5);
   const auto pixel = [](std::vector<Layer> layers) {
     const Scene scene = scene_of(std::move(layers), {-3, 0.7, 1.1}, {1, 0, 0});
-    return render(scene).pixels[0];
+    return render(scene).image.pixels[0];
   };
   const double hazed = -std::expm1(-0.6);
   // Red below blue, both over the haze, wherever that is in the list.
@@ -236,14 +236,14 @@ TEST(Projections, SamplesAreAveragedAsColors) {
   // Rays at (0, 0), (1, 0), (0, 1), (1, 1), moved inside by a scale a little smaller.
   scene.camera.parallel_scale = 0.9;
   const double a = 0.05, b = 0.95;
-  EXPECT_NEAR(static_cast<double>(render(scene).pixels[0][0]), (a * a + 2 * a * b + b * b) / 4,
-              1e-6);
+  EXPECT_NEAR(static_cast<double>(render(scene).image.pixels[0][0]),
+              (a * a + 2 * a * b + b * b) / 4, 1e-6);
 }
 
 std::string refusal(const Scene& scene, bool values = false) {
   try {
     RenderOptions options;
-    options.values = values;
+    options.outputs.values = values;
     render(scene, options);
   } catch (const Error& error) {
     return error.what();
@@ -263,10 +263,10 @@ TEST(Projections, LieOverSampledLayers) {
   haze.projection.reset();
   Scene scene =
       scene_of({projected(one_cell(), LayerProjection::maximum), haze}, {-1, -1, -1}, {1, 1, 1});
-  const Image exact = render(scene);
+  const Image exact = render(scene).image;
   scene.integration.method = Method::midpoint;
   scene.integration.step = 0.01;
-  const Image sampled = render(scene);
+  const Image sampled = render(scene).image;
   for (std::size_t i = 0; i < exact.pixels.size(); ++i) {
     for (std::size_t c = 0; c < 4; ++c) {
       EXPECT_NEAR(sampled.pixels[i][c], exact.pixels[i][c], 4e-3f) << i;

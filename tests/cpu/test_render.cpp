@@ -33,12 +33,12 @@ TEST(Render, SameBitsForAnyNumberOfThreads) {
   for (const Method method : {Method::exact, Method::midpoint}) {
     scene.integration.method = method;
     RenderOptions options;
-    options.depth = true;
-    options.threads = 1;
-    const Image one = render(scene, options);
+    options.outputs.depth = true;
+    options.machine.threads = 1;
+    const Image one = render(scene, options).image;
     for (const int threads : {2, 3, 7}) {
-      options.threads = threads;
-      const Image many = render(scene, options);
+      options.machine.threads = threads;
+      const Image many = render(scene, options).image;
       EXPECT_EQ(one.pixels, many.pixels) << threads << " threads";
       EXPECT_EQ(one.depth, many.depth) << threads << " threads";
     }
@@ -49,8 +49,8 @@ TEST(Render, ReportCountsAndThreads) {
   const Scene scene = small_scene();
   RenderReport report;
   RenderOptions options;
-  options.threads = 2;
-  render(scene, options, &report);
+  options.machine.threads = 2;
+  report = render(scene, options).report;
   EXPECT_EQ(report.rays, 37u * 29u);
   EXPECT_EQ(report.threads, 2);
   EXPECT_GT(report.cells, 24u * 100u);
@@ -61,7 +61,7 @@ TEST(Render, ProgressRisesToOneAndCancels) {
   const Scene scene = small_scene();
   RenderOptions options;
   double last = 0;
-  options.progress = [&](double share) {
+  options.monitor.progress = [&](double share) {
     EXPECT_GT(share, last);
     EXPECT_LE(share, 1);
     last = share;
@@ -69,11 +69,11 @@ TEST(Render, ProgressRisesToOneAndCancels) {
   };
   for (const int threads : {1, 2, 5}) {
     last = 0;
-    options.threads = threads;
+    options.machine.threads = threads;
     render(scene, options);
     EXPECT_EQ(last, 1) << threads << " threads";
   }
-  options.progress = [](double) { return false; };
+  options.monitor.progress = [](double) { return false; };
   EXPECT_THROW(render(scene, options), Cancelled);
 }
 
@@ -95,7 +95,7 @@ TEST(Render, RefusesWhatItCannotRender) {
   test::volume_of(scene).transfer_function.reset();
   EXPECT_THROW(render(scene), Error);
   RenderOptions options;
-  options.threads = -1;
+  options.machine.threads = -1;
   EXPECT_THROW(render(small_scene(), options), Error);
 }
 
@@ -130,8 +130,8 @@ TEST(Render, SlabHasItsClosedFormInEveryMethodAndItsHalfOpacityDepth) {
       for (const Precision precision : {Precision::float32, Precision::float64}) {
         scene.integration = {method, precision, 0.37};
         RenderOptions options;
-        options.depth = true;
-        const Image image = render(scene, options);
+        options.outputs.depth = true;
+        const Image image = render(scene, options).image;
         const double tolerance = precision == Precision::float32 ? 1e-6 : 1e-7;
         for (std::size_t i = 0; i < image.pixels.size(); ++i) {
           EXPECT_NEAR(image.pixels[i][0], 0.5 * alpha, tolerance) << method_name(method);
@@ -150,7 +150,7 @@ TEST(Render, TaylorOnTheSlabIsTheProductOfItsSteps) {
   // In voxels of 0.25: eight steps of 0.25 over the length of 2, each of opacity min(1, 2 · 0.25).
   scene.integration = {Method::taylor, Precision::float64, 1.0};
   const double alpha = 1 - std::pow(0.5, 8);
-  for (const auto& pixel : render(scene).pixels) {
+  for (const auto& pixel : render(scene).image.pixels) {
     EXPECT_NEAR(pixel[0], 0.5 * alpha, 1e-7);
     EXPECT_NEAR(pixel[3], alpha, 1e-7);
   }
@@ -160,8 +160,8 @@ TEST(Render, DepthIsInfiniteWhereNothingIsSeen) {
   Scene scene = slab(Centering::point);
   scene.camera.position.x = scene.camera.focal_point.x = 100;
   RenderOptions options;
-  options.depth = true;
-  const Image image = render(scene, options);
+  options.outputs.depth = true;
+  const Image image = render(scene, options).image;
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     EXPECT_EQ(image.pixels[i], (std::array<float, 4>{}));
     EXPECT_EQ(image.depth[i], std::numeric_limits<float>::infinity());

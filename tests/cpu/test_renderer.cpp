@@ -97,10 +97,10 @@ TEST(Renderer, RendersTheSameBitsAsTheFunction) {
   aside.translation = {1.1, 0.3, 0};
   scene.layers[1].transform = aside;
   RenderOptions options;
-  options.depth = options.error = true;
+  options.outputs.depth = options.outputs.error = true;
   const auto expect_same = [&](const char* what) {
     SCOPED_TRACE(what);
-    const Image kept = renderer.render(scene, options), fresh = render(scene, options);
+    const Image kept = renderer.render(scene, options).image, fresh = render(scene, options).image;
     EXPECT_EQ(kept.pixels, fresh.pixels);
     EXPECT_EQ(kept.error, fresh.error);
     EXPECT_EQ(kept.depth, fresh.depth);
@@ -123,9 +123,9 @@ TEST(Renderer, RendersTheSameBitsAsTheFunction) {
   expect_same("clipped");
   scene.background = Rgb<double>{4, 4, 4};
   expect_same("brighter behind");
-  options.depth = false;
+  options.outputs.depth = false;
   expect_same("without depth");
-  options.instruction_set = InstructionSet::scalar;
+  options.machine.instruction_set = InstructionSet::scalar;
   expect_same("one by one");
 }
 
@@ -148,9 +148,9 @@ TEST(Renderer, StartsAFrameThatCanBeWatched) {
   Renderer renderer(2);
   const Scene scene = scene_of({layer_of("shells")});
   RenderOptions options;
-  options.preview = 2;
+  options.monitor.preview = 2;
   std::atomic<int> tiles{0};
-  options.tile = [&](const TileResult&) {
+  options.monitor.tile = [&](const TileResult&) {
     ++tiles;
     return true;
   };
@@ -159,10 +159,9 @@ TEST(Renderer, StartsAFrameThatCanBeWatched) {
   EXPECT_EQ(frame.state().level, 0);
   EXPECT_EQ(frame.state().fraction, 1);
   const Image seen = frame.look();
-  RenderReport report;
-  const Image image = frame.wait(&report);
+  const auto [image, report] = frame.wait();
   EXPECT_EQ(seen.pixels, image.pixels);
-  EXPECT_EQ(image.pixels, render(scene).pixels);
+  EXPECT_EQ(image.pixels, render(scene).image.pixels);
   EXPECT_GT(report.rays, 0u);
   EXPECT_GT(tiles, 0) << "the caller's callback is called too";
 }
@@ -171,7 +170,7 @@ TEST(Renderer, ShowsCoarseLevelsFirst) {
   Renderer renderer(2);
   Scene scene = slow_scene();
   RenderOptions options;
-  options.preview = 5;
+  options.monitor.preview = 5;
   RunningFrame frame = renderer.start(scene, options);
   while (frame.state().level < 0 && !frame.finished()) std::this_thread::yield();
   ASSERT_FALSE(frame.finished());
@@ -193,7 +192,7 @@ TEST(Renderer, CancelsFromAnyThread) {
   for (const bool from_outside : {false, true}) {
     std::stop_source outside;
     RenderOptions options;
-    options.stop = outside.get_token();
+    options.monitor.stop = outside.get_token();
     RunningFrame frame = renderer.start(scene, options);
     std::thread other([&] {
       if (from_outside) {
@@ -207,7 +206,7 @@ TEST(Renderer, CancelsFromAnyThread) {
     EXPECT_TRUE(frame.finished());
   }
   { const RunningFrame forgotten = renderer.start(scene); }  // Cancelled and waited for.
-  EXPECT_FALSE(renderer.render(scene_of({layer_of("shells")})).pixels.empty());
+  EXPECT_FALSE(renderer.render(scene_of({layer_of("shells")})).image.pixels.empty());
 }
 
 TEST(Renderer, RendersOnSeveralThreadsAtOnce) {
@@ -220,11 +219,11 @@ TEST(Renderer, RendersOnSeveralThreadsAtOnce) {
   {
     std::vector<std::jthread> threads;
     for (std::size_t i = 0; i < images.size(); ++i) {
-      threads.emplace_back([&, i] { images[i] = renderer.render(scenes[i]); });
+      threads.emplace_back([&, i] { images[i] = renderer.render(scenes[i]).image; });
     }
   }
   for (std::size_t i = 0; i < images.size(); ++i) {
-    EXPECT_EQ(images[i].pixels, render(scenes[i]).pixels) << i;
+    EXPECT_EQ(images[i].pixels, render(scenes[i]).image.pixels) << i;
   }
 }
 
@@ -235,7 +234,7 @@ TEST(Renderer, OutlivedByItsFrames) {
     Renderer renderer(1);
     frame.emplace(renderer.start(scene));
   }
-  EXPECT_EQ(frame->wait().pixels, render(scene).pixels);
+  EXPECT_EQ(frame->wait().image.pixels, render(scene).image.pixels);
 }
 
 TEST(Renderer, TellsErrors) {
@@ -263,17 +262,17 @@ TEST(Backdrop, IsSeenWhereNothingIsInFrontOfIt) {
   const auto backdrop = backdrop_of(scene.size, 0);
   scene.backdrop = backdrop;
   RenderOptions options;
-  options.depth = options.error = true;
-  const Image image = render(scene, options);
+  options.outputs.depth = options.outputs.error = true;
+  const Image image = render(scene, options).image;
   EXPECT_EQ(image.pixels, backdrop->pixels);
   EXPECT_EQ(image.depth, backdrop->depth);
 }
 
 TEST(Backdrop, BehindAllDataIsUnderThem) {
   Scene scene = scene_of({layer_of("shells")});
-  const Image data = render(scene);
+  const Image data = render(scene).image;
   scene.backdrop = backdrop_of(scene.size, 1e6f);
-  const Image image = render(scene);
+  const Image image = render(scene).image;
   for (std::size_t i = 0; i < data.pixels.size(); ++i) {
     for (std::size_t c = 0; c < 4; ++c) {
       const float behind = scene.backdrop->pixels[i][c];

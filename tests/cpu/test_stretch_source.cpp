@@ -57,10 +57,10 @@ Scene seen(std::vector<Layer> layers) {
 
 Image frame(const Scene& scene, std::optional<InstructionSet> set, int threads = 1) {
   RenderOptions options;
-  options.error = true;
-  options.threads = threads;
-  options.instruction_set = set;
-  return render(scene, options);
+  options.outputs.error = true;
+  options.machine.threads = threads;
+  options.machine.instruction_set = set;
+  return render(scene, options).image;
 }
 
 /// Expects the same picture, one ray at a time and in packets.
@@ -362,7 +362,7 @@ TEST(StretchSources, MayThrow) {
     // In frames that are started, too; the renderer goes on with others.
     Renderer renderer(4);
     EXPECT_THROW(renderer.start(throwing(std::runtime_error("disk"))).wait(), Error);
-    EXPECT_GT(renderer.render(seen({layer()})).at(7, 7)[3], 0.0f);
+    EXPECT_GT(renderer.render(seen({layer()})).image.at(7, 7)[3], 0.0f);
   }
   const auto none = std::make_shared<Faulty>([](FieldStretch&, int) { return false; });
   none->returns_none = true;
@@ -473,9 +473,8 @@ TEST(StretchSources, AreNotForEverything) {
     return n < 1;
   }));
   RenderOptions options;
-  options.device = Device::emulated;
-  RenderReport report;
-  const Image image = render(scene, options, &report);
+  options.machine.device = Device::emulated;
+  const auto [image, report] = render(scene, options);
   EXPECT_GT(image.at(7, 7)[3], 0.1f);
   EXPECT_EQ(report.device, "rendered by the CPU: devices cannot do stretch sources yet");
 }

@@ -125,13 +125,13 @@ TEST(TakeInTurn, AnExceptionEndsItAndComesOut) {
 /// Tiles that are finished out of order, as by threads of unequal speed.
 TEST(Progress, TellsOfACoarseLevelFirst) {
   RenderOptions options;
-  options.preview = 1;
+  options.monitor.preview = 1;
   std::vector<int> levels;
-  options.tile = [&](const TileResult& result) {
+  options.monitor.tile = [&](const TileResult& result) {
     levels.push_back(result.tile.level);
     return true;
   };
-  Image image;
+  const ImageView image;
   std::vector<Tile> tiles = make_tiles({64, 64}, 1);
   ASSERT_EQ(tiles.size(), 4u + 12u);
   Progress progress(options, image, tiles);

@@ -74,10 +74,10 @@ DeviceRow check_on_device(const GalleryEntry& entry, const Exhibit& exhibit, std
   if (!is_for_devices(scene)) {
     // The CPU's own matrix has these.
     RenderOptions one;
-    one.device = device;
-    one.threads = options.threads;
+    one.machine.device = device;
+    one.machine.threads = options.threads;
     RenderReport report;
-    render(scene, one, &report);
+    report = render(scene, one).report;
     if (!goes_to_cpu(report)) row.faults.push_back(row.camera + ": " + report.device);
     return row;
   }

@@ -24,9 +24,9 @@ namespace {
 
 RenderOptions on(Device device) {
   RenderOptions options;
-  options.device = device;
-  options.threads = 2;
-  options.error = options.depth = true;
+  options.machine.device = device;
+  options.machine.threads = 2;
+  options.outputs.error = options.outputs.depth = true;
   return options;
 }
 
@@ -60,18 +60,17 @@ TEST(DeviceFrames, AreTheSameToTheBitWheneverTheyAreRendered) {
       SCOPED_TRACE(name);
       RenderOptions options = on(device);
       Renderer renderer;
-      RenderReport report;
-      const Image first = renderer.render(scene, options, &report);
+      const auto [first, report] = renderer.render(scene, options);
       EXPECT_EQ(report.rays, 19u * 19u);
       EXPECT_FALSE(report.device.starts_with("rendered by the CPU")) << report.device;
-      EXPECT_TRUE(same_bits(first, renderer.render(scene, options)));
-      options.threads = 1;
-      EXPECT_TRUE(same_bits(first, Renderer().render(scene, options)));
+      EXPECT_TRUE(same_bits(first, renderer.render(scene, options).image));
+      options.machine.threads = 1;
+      EXPECT_TRUE(same_bits(first, Renderer().render(scene, options).image));
       for (const int preview : {1, 3}) {
-        options.preview = preview;
-        options.tile = [](const TileResult&) { return true; };
-        RenderReport levels;
-        EXPECT_TRUE(same_bits(first, renderer.render(scene, options, &levels)));
+        options.monitor.preview = preview;
+        options.monitor.tile = [](const TileResult&) { return true; };
+        const auto [in_levels, levels] = renderer.render(scene, options);
+        EXPECT_TRUE(same_bits(first, in_levels));
         EXPECT_EQ(levels.rays, report.rays);
         EXPECT_EQ(levels.evaluations, report.evaluations);
       }
@@ -85,7 +84,8 @@ TEST(DeviceFrames, AgreeWithTheCpuAlsoInDepthAndForSeveralRaysAPixel) {
       SCOPED_TRACE(name);
       for (const int samples : {1, 3}) {
         scene.samples = samples;
-        const Image theirs = render(scene, on(device)), ours = render(scene, on(Device::cpu));
+        const Image theirs = render(scene, on(device)).image,
+                    ours = render(scene, on(Device::cpu)).image;
         expect_agree(theirs, ours);
         for (std::size_t i = 0; i < ours.pixels.size(); ++i) {
           // Where there is little opacity its half is where errors say.
@@ -100,10 +100,10 @@ TEST(DeviceFrames, AgreeWithTheCpuAlsoInDepthAndForSeveralRaysAPixel) {
 TEST(DeviceFrames, ShowACoarseLevelFirst) {
   const Scene scene = device_examples(21)[0].scene;
   RenderOptions options = on(Device::emulated);
-  options.preview = 2;
+  options.monitor.preview = 2;
   int last_level = 2;
   std::size_t pixels = 0;
-  options.tile = [&](const TileResult& result) {
+  options.monitor.tile = [&](const TileResult& result) {
     EXPECT_LE(result.tile.level, last_level);
     last_level = result.tile.level;
     pixels += static_cast<std::size_t>(result.tile.columns * result.tile.rows);
@@ -117,12 +117,12 @@ TEST(DeviceFrames, ShowACoarseLevelFirst) {
 TEST(DeviceFrames, CanBeCancelled) {
   const Scene scene = device_examples(21)[0].scene;
   RenderOptions options = on(Device::emulated);
-  options.progress = [](double) { return false; };
+  options.monitor.progress = [](double) { return false; };
   EXPECT_THROW(render(scene, options), Cancelled);
   std::stop_source stop;
   stop.request_stop();
-  options.progress = {};
-  options.stop = stop.get_token();
+  options.monitor.progress = {};
+  options.monitor.stop = stop.get_token();
   EXPECT_THROW(render(scene, options), Cancelled);
 }
 
@@ -131,14 +131,15 @@ TEST(DeviceFrames, DoNotDisturbEachOther) {
   const std::vector<DeviceExample> examples = device_examples(16);
   std::vector<Image> expected;
   for (const DeviceExample& example : examples) {
-    expected.push_back(render(example.scene, on(Device::emulated)));
+    expected.push_back(render(example.scene, on(Device::emulated)).image);
   }
   Renderer shared;
   const auto work = [&](bool shares) {
     Renderer own;
     for (std::size_t i = 0; i < examples.size(); ++i) {
       Renderer& renderer = shares ? shared : own;
-      EXPECT_TRUE(same_bits(renderer.render(examples[i].scene, on(Device::emulated)), expected[i]))
+      EXPECT_TRUE(
+          same_bits(renderer.render(examples[i].scene, on(Device::emulated)).image, expected[i]))
           << examples[i].name;
     }
   };
@@ -151,11 +152,10 @@ TEST(DeviceFrames, DoNotDisturbEachOther) {
 /// Returns what is said of the device.
 std::string told(const Scene& scene) {
   RenderOptions options = on(Device::emulated);
-  RenderReport report;
-  const Image theirs = render(scene, options, &report);
+  const auto [theirs, report] = render(scene, options);
   if (report.device.starts_with("rendered by the CPU")) {
-    options.device = Device::cpu;
-    EXPECT_TRUE(same_bits(theirs, render(scene, options)));
+    options.machine.device = Device::cpu;
+    EXPECT_TRUE(same_bits(theirs, render(scene, options).image));
   }
   return report.device;
 }
@@ -204,11 +204,9 @@ TEST(DeviceFrames, SampleByTheMidpointRuleAsTheCpuDoes) {
     scene.integration.method = Method::midpoint;
     scene.integration.precision = Precision::float32;
     scene.integration.step = 0.1;
-    RenderReport report;
-    const Image theirs = render(scene, on(device), &report);
+    const auto [theirs, report] = render(scene, on(device));
     EXPECT_FALSE(report.device.starts_with("rendered by the CPU")) << report.device;
-    RenderReport cpu_report;
-    const Image ours = render(scene, on(Device::cpu), &cpu_report);
+    const auto [ours, cpu_report] = render(scene, on(Device::cpu));
     for (std::size_t i = 0; i < ours.pixels.size(); ++i) {
       for (std::size_t c = 0; c < 4; ++c) {
         ASSERT_NEAR(theirs.pixels[i][c], ours.pixels[i][c], 2e-6) << "pixel " << i;
@@ -235,8 +233,7 @@ TEST(DeviceFrames, LeavePixelsToTheCpu) {
   scene.size = {9, 9};
   scene.camera = parallel_camera({0.1, 0.05, -5}, {0.003, 0.002, 1}, 2);
   for (const Device device : devices()) {
-    RenderReport report;
-    const Image theirs = render(scene, on(device), &report);
+    const auto [theirs, report] = render(scene, on(device));
     EXPECT_GT(report.pixels_left, 10u);
     EXPECT_LT(report.pixels_left, 81u);
     EXPECT_NE(report.device.find("it left " + std::to_string(report.pixels_left) + " of 81"),
@@ -268,7 +265,7 @@ TEST(DeviceFrames, CutALitCellWhereverItsTableAsksForIt) {
       Scene scene = scene_of(exhibit({layer}), 0, 10);
       scene.integration.tolerance = tolerance;
       const Verdict verdict =
-          judge(render(scene, on(device)), reference_frame(scene, 2), tolerance);
+          judge(render(scene, on(device)).image, reference_frame(scene, 2), tolerance);
       EXPECT_TRUE(verdict.kept()) << verdict.text();
       EXPECT_EQ(verdict.said_over, 0);
       EXPECT_GT(verdict.brightest, 0.1);

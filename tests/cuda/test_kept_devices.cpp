@@ -16,11 +16,12 @@ namespace {
 
 class KeptFrames {
  public:
-  KeptFrames() { options_.device = Device::emulated; }
+  KeptFrames() { options_.machine.device = Device::emulated; }
   /// Renders a frame and returns the bytes that it uploaded.
   std::uint64_t upload(const Scene& scene) {
     const std::uint64_t before = arrays().uploaded_bytes();
-    render_frame(scene, options_, 2, setups_, devices_, nullptr);
+    Image image = make_image(scene.size, options_.outputs);
+    render_frame(ImageView(image), scene, options_, 2, setups_, devices_);
     return arrays().uploaded_bytes() - before;
   }
   std::uint64_t kept() { return arrays().kept_bytes(); }

@@ -62,14 +62,14 @@ bool check_frames(const Arguments& arguments) {
   bool good = true;
   for (const auto& [name, scene] : scenes_of(arguments)) {
     RenderOptions options;
-    options.device = arguments.device;
-    options.threads = arguments.threads;
-    options.error = options.depth = true;
+    options.machine.device = arguments.device;
+    options.machine.threads = arguments.threads;
+    options.outputs.error = options.outputs.depth = true;
     Renderer renderer;
-    RenderReport report;
-    const std::uint64_t first = hash_of(renderer.render(scene, options, &report));
-    const std::uint64_t again = hash_of(renderer.render(scene, options));
-    const std::uint64_t anew = hash_of(Renderer().render(scene, options));
+    const auto [image, report] = renderer.render(scene, options);
+    const std::uint64_t first = hash_of(image);
+    const std::uint64_t again = hash_of(renderer.render(scene, options).image);
+    const std::uint64_t anew = hash_of(Renderer().render(scene, options).image);
     const std::string bits = bench::format("%016llx", static_cast<unsigned long long>(first));
     Json row{{"kind", "frame"},
              {"scene", name},

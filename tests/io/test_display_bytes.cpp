@@ -58,9 +58,9 @@ TEST(DisplayBytes, RoundEachSignalToItself) {
 }
 
 TEST(DisplayBytes, TakeEveryNthPixel) {
-  const Image image = random_image(10, 7);
+  Image image = random_image(10, 7);
   const std::vector<std::uint8_t> all = display_bytes(image, {}, DisplayLayout::rgb);
-  const std::vector<std::uint8_t> some = display_bytes(image, {}, DisplayLayout::rgb, 4);
+  const std::vector<std::uint8_t> some = display_bytes(ImageView(image), {}, DisplayLayout::rgb, 4);
   ASSERT_EQ(some.size(), 3U * 2U * 3U);
   for (std::size_t j = 0; j < 2; ++j) {
     for (std::size_t i = 0; i < 3; ++i) {

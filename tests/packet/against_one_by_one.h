@@ -34,23 +34,22 @@ enum class Promise {
 inline void compare(Scene scene, const std::vector<double>& tolerances, Seen& seen,
                     Promise promise = Promise::within_tolerance, RenderOptions options = {}) {
   constexpr double judge_tolerance = 1e-6;
-  options.threads = 1;
-  options.error = true;
-  options.instruction_set = InstructionSet::scalar;
+  options.machine.threads = 1;
+  options.outputs.error = true;
+  options.machine.instruction_set = InstructionSet::scalar;
   scene.integration.tolerance = judge_tolerance;
   scene.integration.precision = Precision::float64;
   scene.integration.grade = Grade::proved;
-  const Image truth = render(scene, options);
+  const Image truth = render(scene, options).image;
   scene.integration.precision = Precision::automatic;
   for (const InstructionSet set : packet_sets) {
     if (!test::runs_here(set)) continue;
-    options.instruction_set = set;
+    options.machine.instruction_set = set;
     for (const double tolerance : tolerances) {
       SCOPED_TRACE(testing::Message() << name_of(set) << " at " << tolerance);
       scene.integration.tolerance = tolerance;
       scene.integration.grade = Grade::estimated;
-      RenderReport report;
-      const Image image = render(scene, options, &report);
+      const auto [image, report] = render(scene, options);
       ++seen.frames;
       if (report.spans.strides > 0) ++seen.with_strides;
       seen.between += report.pixels_interpolated;

@@ -120,10 +120,12 @@ inline void look_at_data(Scene& scene, std::mt19937& random) {
 inline Image frame(const Scene& scene, std::optional<InstructionSet> set,
                    RenderReport* report = nullptr, int threads = 1) {
   RenderOptions options;
-  options.error = true;
-  options.threads = threads;
-  options.instruction_set = set;
-  return render(scene, options, report);
+  options.outputs.error = true;
+  options.machine.threads = threads;
+  options.machine.instruction_set = set;
+  RenderResult result = render(scene, options);
+  if (report != nullptr) *report = std::move(result.report);
+  return std::move(result.image);
 }
 
 /// Expects each channel of each pixel within what both frames say, and `beside`. Ends at the first

@@ -334,14 +334,13 @@ TEST_F(CellFrames, AreTheSameWhateverElseIsInAPacket) {
     one.size = {21, 19};
     one.integration.tolerance = seed % 2 == 0 ? 1.0 / 512 : 1e-4;
     RenderOptions options;
-    options.error = true;
-    options.threads = 1;
-    RenderReport report;
-    const Image whole = render(one, options, &report);
+    options.outputs.error = true;
+    options.machine.threads = 1;
+    const auto [whole, report] = render(one, options);
     in_double += report.spans.in_double;
-    options.threads = 3;
-    options.preview = 3;  // other pixels beside each other
-    const Image other = render(one, options);
+    options.machine.threads = 3;
+    options.monitor.preview = 3;  // other pixels beside each other
+    const Image other = render(one, options).image;
     ASSERT_EQ(whole.pixels, other.pixels);
     ASSERT_EQ(whole.error, other.error);
   }

@@ -137,18 +137,18 @@ class Depths : public RandomFrames {
   /// Of all instruction sets, that half of the opacity is where they say, but for what pixels say
   /// that they are off by: of the opacity, and of that up to the half.
   void expect_half(Scene scene, double tolerance, RenderOptions options = {}) {
-    options.depth = options.error = true;
+    options.outputs.depth = options.outputs.error = true;
     scene.integration.tolerance = tolerance;
     const ReferenceRays reference(scene);
     const CameraFrame<double> camera = make_camera_frame(scene.camera, scene.size);
     for (const InstructionSet set : packet_sets) {
       if (!test::runs_here(set)) continue;
       SCOPED_TRACE(testing::Message() << name_of(set) << " at " << tolerance);
-      options.instruction_set = set;
-      options.preview = 0;
-      const Image image = render(scene, options);
-      options.preview = 3;  // other rays beside each other
-      ASSERT_EQ(image.depth, render(scene, options).depth);
+      options.machine.instruction_set = set;
+      options.monitor.preview = 0;
+      const Image image = render(scene, options).image;
+      options.monitor.preview = 3;  // other rays beside each other
+      ASSERT_EQ(image.depth, render(scene, options).image.depth);
       for (std::size_t i = 0; i < image.pixels.size(); i += 3) {
         const double opacity{image.pixels[i][3]}, depth{image.depth[i]};
         ASSERT_EQ(opacity > 0, std::isfinite(depth)) << "pixel " << i;
@@ -198,7 +198,7 @@ TEST_F(Depths, OfManySegments) {
   for (const int cells : {300, 700}) {
     for (const bool gaussians : {false, true}) {
       RenderOptions options;
-      options.gaussian_march = GaussianMarch::cells;
+      options.machine.gaussian_march = GaussianMarch::cells;
       expect_half(of_many_cells(cells, gaussians), 1e-4, options);
     }
   }
@@ -209,7 +209,7 @@ TEST_F(Depths, OfGaussians) {
     const Scene scene = of_channels(12, false, false);
     for (const GaussianMarch march : {GaussianMarch::steps, GaussianMarch::cells}) {
       RenderOptions options;
-      options.gaussian_march = march;
+      options.machine.gaussian_march = march;
       expect_half(scene, n % 2 == 0 ? 1e-2 : 1e-4, options);
     }
   }

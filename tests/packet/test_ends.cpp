@@ -55,8 +55,8 @@ void renders(std::shared_ptr<Volume> volume, Points points, int* handed_back = n
   test::volume_of(scene).transfer_function = std::make_shared<TransferFunction>(std::move(points));
   scene.size = {32, 32};
   RenderOptions options;
-  options.threads = 1;
-  options.error = true;
+  options.machine.threads = 1;
+  options.outputs.error = true;
   const Camera aslant = default_camera(*test::volume_of(scene).volume, scene.size);
   Camera along = aslant;
   const double far = length(aslant.position - aslant.focal_point);
@@ -66,13 +66,12 @@ void renders(std::shared_ptr<Volume> volume, Points points, int* handed_back = n
   along.parallel_scale = test::volume_of(scene).volume->voxel_size() * width / 2;
   for (const InstructionSet set : packet_sets) {
     if (!test::runs_here(set)) continue;
-    options.instruction_set = set;
+    options.machine.instruction_set = set;
     for (const double tolerance : {1.0, default_tolerance, 2e-5}) {
       scene.integration.tolerance = tolerance;
       for (const Camera& camera : {aslant, along}) {
         scene.camera = camera;
-        RenderReport report;
-        const Image image = render(scene, options, &report);
+        const auto [image, report] = render(scene, options);
         if (handed_back != nullptr) *handed_back += static_cast<int>(report.spans.in_double);
         for (std::size_t i = 0; i < image.pixels.size(); ++i) {
           ASSERT_LE(static_cast<double>(image.error[i]), tolerance * (1 + 1e-6));

@@ -101,21 +101,20 @@ struct Seen {
 void compare(Scene scene, Seen& seen) {
   constexpr double judge_tolerance = 1e-6;
   RenderOptions options;
-  options.threads = 1;
-  options.error = true;
-  options.instruction_set = InstructionSet::scalar;
+  options.machine.threads = 1;
+  options.outputs.error = true;
+  options.machine.instruction_set = InstructionSet::scalar;
   scene.integration.tolerance = judge_tolerance;
   scene.integration.precision = Precision::float64;
-  const Image truth = render(scene, options);
+  const Image truth = render(scene, options).image;
   scene.integration.precision = Precision::automatic;
   for (const InstructionSet set : packet_sets) {
     if (!test::runs_here(set)) continue;
-    options.instruction_set = set;
+    options.machine.instruction_set = set;
     for (const double tolerance : {1e-2, default_tolerance, 1e-4}) {
       SCOPED_TRACE(testing::Message() << name_of(set) << " at " << tolerance);
       scene.integration.tolerance = tolerance;
-      RenderReport report;
-      const Image image = render(scene, options, &report);
+      const auto [image, report] = render(scene, options);
       seen.handed_back += report.spans.in_double;
       for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         const double said = static_cast<double>(image.error[i]);

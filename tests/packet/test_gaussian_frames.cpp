@@ -32,7 +32,7 @@ class GaussianFrames : public RandomFrames, public testing::WithParamInterface<G
 
   static RenderOptions options() {
     RenderOptions options;
-    options.gaussian_march = GetParam();
+    options.machine.gaussian_march = GetParam();
     return options;
   }
   static void compare(const Scene& scene, const std::vector<double>& tolerances, Seen& seen) {
@@ -195,7 +195,7 @@ TEST(GaussianMarchOfAFrame, IsTheOneThatIsLikelyToBeFaster) {
     test::channels_of(scene).transfer_function = one_on_ramp(0.4, width, 1, 48);
     scene.integration.tolerance = tolerance;
     RenderReport report;
-    render(scene, {}, &report);
+    report = render(scene).report;
     EXPECT_GT(report.spans.strides + report.spans.panels + report.spans.lines, 0u);
     return report.spans.strides > 0;
   };
@@ -212,19 +212,18 @@ TEST_P(GaussianFrames, DoNotPassANarrowOneUnseen) {
   constexpr int cells = 48;
   Scene scene = ramp_scene(cells, 0);
   RenderOptions options = GaussianFrames::options();
-  options.error = true;
+  options.outputs.error = true;
   int places = 0;
   double worst = 0;
   for (const InstructionSet set : packet_sets) {
     if (!test::runs_here(set)) continue;
-    options.instruction_set = set;
+    options.machine.instruction_set = set;
     for (double center = 0.1; center < 0.9; center += 0.0137) {
       for (const double width : {0.03, 0.004, 0.0006}) {
         test::channels_of(scene).transfer_function = one_on_ramp(center, width, 1, cells);
         for (const double tolerance : {1e-2, 1.0 / 512, 1e-4}) {
           scene.integration.tolerance = tolerance;
-          RenderReport report;
-          const Image image = render(scene, options, &report);
+          const auto [image, report] = render(scene, options);
           EXPECT_EQ(report.spans.strides > 0, GetParam() == GaussianMarch::steps);
           for (std::size_t i = 0; i < image.pixels.size(); ++i) {
             const double said = double{image.error[i]};
@@ -316,7 +315,7 @@ TEST_P(GaussianFrames, KeepRaysInTheFacesBehindWhatIsSkipped) {
     Scene scene = ramp_seen_in_faces(points, 18);
     test::channels_of(scene).transfer_function = one_on_ramp(0.5, 0.1, 1, 30);
     RenderOptions options = GaussianFrames::options();
-    const Image image = render(scene, options);
+    const Image image = render(scene, options).image;
     for (const auto& pixel : image.pixels) EXPECT_NEAR(pixel[3], 1 - std::exp(-1.0), 3e-3);
     compare(scene, {1e-2, 1e-4}, seen);
     if (HasFatalFailure()) return;
@@ -396,12 +395,12 @@ TEST_P(GaussianFrames, AreTheSameForAnyNumberOfThreads) {
     Scene one = scene();
     one.size = {40, 40};
     RenderOptions options = GaussianFrames::options();
-    options.error = true;
-    options.threads = 1;
-    const Image alone = render(one, options);
-    options.threads = 3;
-    options.preview = 3;  // other pixels beside each other
-    const Image together = render(one, options);
+    options.outputs.error = true;
+    options.machine.threads = 1;
+    const Image alone = render(one, options).image;
+    options.machine.threads = 3;
+    options.monitor.preview = 3;  // other pixels beside each other
+    const Image together = render(one, options).image;
     EXPECT_EQ(alone.pixels, together.pixels) << seed;
     EXPECT_EQ(alone.error, together.error) << seed;
   }
@@ -414,7 +413,7 @@ TEST_P(GaussianFrames, GoDownToTheirSmallestTolerance) {
   for (const auto& [tolerance, steps] : {std::pair{1e-5, true}, {0.9e-5, false}}) {
     scene.integration.tolerance = tolerance;
     RenderReport report;
-    render(scene, options(), &report);
+    report = render(scene, options()).report;
     EXPECT_EQ(report.spans.strides > 0, steps && GetParam() == GaussianMarch::steps) << tolerance;
   }
 }

@@ -26,7 +26,7 @@ class GaussianPixelsBetween : public SeenClosely {
 
   static RenderOptions in_steps() {
     RenderOptions options;
-    options.gaussian_march = GaussianMarch::steps;
+    options.machine.gaussian_march = GaussianMarch::steps;
     return options;
   }
   template <class Make>
@@ -172,15 +172,14 @@ TEST_F(GaussianPixelsBetween, AreTheSameForAnyThreadsAndTiles) {
   scene.size = {150, 83};
   scene.integration.tolerance = 1e-2;
   RenderOptions options;
-  options.error = true;
-  options.threads = 1;
-  RenderReport report;
-  const Image whole = render(scene, options, &report);
+  options.outputs.error = true;
+  options.machine.threads = 1;
+  const auto [whole, report] = render(scene, options);
   EXPECT_GT(report.pixels_interpolated, report.pixels / 4);
   EXPECT_LE(report.largest_error, 1e-2);
-  options.threads = 3;
-  options.preview = 2;
-  const Image other = render(scene, options);
+  options.machine.threads = 3;
+  options.monitor.preview = 2;
+  const Image other = render(scene, options).image;
   EXPECT_EQ(whole.pixels, other.pixels);
   EXPECT_EQ(whole.error, other.error);
 }
@@ -194,7 +193,7 @@ TEST_F(GaussianPixelsBetween, AreNoneWhereTheyAreNotWanted) {
   RenderOptions options = in_steps();
   const auto between = [&](const Scene& of) {
     RenderReport report;
-    render(of, options, &report);
+    report = render(of, options).report;
     EXPECT_EQ(report.rays + report.pixels_interpolated, report.pixels);
     return report.pixels_interpolated;
   };
@@ -206,10 +205,10 @@ TEST_F(GaussianPixelsBetween, AreNoneWhereTheyAreNotWanted) {
     return x + y + z > 0 ? field(x, y, z) : std::numeric_limits<double>::quiet_NaN();
   });
   EXPECT_EQ(between(behind(scene, {hole}, {one})), 0u);
-  options.depth = true;
+  options.outputs.depth = true;
   EXPECT_EQ(between(scene), 0u);
-  options.depth = false;
-  options.gaussian_march = GaussianMarch::cells;
+  options.outputs.depth = false;
+  options.machine.gaussian_march = GaussianMarch::cells;
   EXPECT_EQ(between(scene), 0u);
 }
 

@@ -291,11 +291,11 @@ TEST(LayerPackets, KnowWhereHalfOfTheOpacityIs) {
     scene.size = {32, 32};
     scene.integration.tolerance = 1e-4;
     RenderOptions options;
-    options.threads = 1;
-    options.depth = true;
-    const Image packets = render(scene, options);
-    options.instruction_set = InstructionSet::scalar;
-    const Image truth = render(scene, options);
+    options.machine.threads = 1;
+    options.outputs.depth = true;
+    const Image packets = render(scene, options).image;
+    options.machine.instruction_set = InstructionSet::scalar;
+    const Image truth = render(scene, options).image;
     for (std::size_t i = 0; i < packets.depth.size(); ++i) {
       if (!std::isfinite(truth.depth[i])) continue;
       ++seen;

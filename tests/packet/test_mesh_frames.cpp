@@ -104,11 +104,11 @@ class MeshFrames : public RandomFrames {
       // One variable is seen in double, and in binary32.
       one.integration.tolerance = seed % 4 == 0 ? 1e-4 : 1e-2;
       RenderOptions options;
-      options.threads = 1;
-      options.error = true;
-      const Image whole = render(one, options);
-      options.preview = 3;  // other pixels beside each other
-      const Image other = render(one, options);
+      options.machine.threads = 1;
+      options.outputs.error = true;
+      const Image whole = render(one, options).image;
+      options.monitor.preview = 3;  // other pixels beside each other
+      const Image other = render(one, options).image;
       ASSERT_EQ(whole.pixels, other.pixels);
       ASSERT_EQ(whole.error, other.error);
     }
@@ -144,10 +144,10 @@ class MultivariateMeshFrames : public MeshFrames {
 TEST_F(MultivariateMeshFrames, GoInPackets) {
   const Scene one = scene(3);
   RenderOptions options;
-  options.error = true;
-  const Image lanes = render(one, options);
-  options.instruction_set = InstructionSet::scalar;
-  const Image alone = render(one, options);
+  options.outputs.error = true;
+  const Image lanes = render(one, options).image;
+  options.machine.instruction_set = InstructionSet::scalar;
+  const Image alone = render(one, options).image;
   // Lanes charge for what they pass over.
   std::size_t others = 0, opaque = 0;
   for (std::size_t i = 0; i < lanes.pixels.size(); ++i) {

@@ -101,14 +101,13 @@ TEST_P(MultivariateFrames, AreTheSameInEveryInstructionSet) {
       scene.integration.grade = grade;
       scene.integration.tolerance = tolerance;
       RenderOptions options;
-      options.error = true;
-      options.instruction_set = InstructionSet::scalar;
-      const Image alone = render(scene, options);
+      options.outputs.error = true;
+      options.machine.instruction_set = InstructionSet::scalar;
+      const Image alone = render(scene, options).image;
       for (const InstructionSet set : packet_sets) {
         if (!test::runs_here(set)) continue;
-        options.instruction_set = set;
-        RenderReport report;
-        const Image lanes = render(scene, options, &report);
+        options.machine.instruction_set = set;
+        const auto [lanes, report] = render(scene, options);
         EXPECT_EQ(report.pixels_over_tolerance, 0u);
         double opaque = 0;
         for (std::size_t i = 0; i < lanes.pixels.size(); ++i) {
@@ -148,12 +147,12 @@ TEST(MultivariateFrame, ColorOfATableIsChargedWithTheRoundingOfTheData) {
   scene.integration.tolerance = 1e-4;
   scene.integration.grade = Grade::proved;
   RenderOptions options;
-  options.error = true;
-  const Image reference = render_reference(scene);
+  options.outputs.error = true;
+  const Image reference = render_reference(scene).image;
   for (const InstructionSet set : instruction_sets) {
     if (!test::runs_here(set)) continue;
-    options.instruction_set = set;
-    const Image image = render(scene, options);
+    options.machine.instruction_set = set;
+    const Image image = render(scene, options).image;
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
       for (std::size_t c = 0; c < 4; ++c) {
         EXPECT_LE(std::fabs(double{image.pixels[i][c]} - double{reference.pixels[i][c]}),

@@ -177,20 +177,19 @@ TEST_F(PixelsBetween, AreTheSameForAnyThreadsAndTiles) {
   for (const int samples : {1, 2}) {
     scene.samples = samples;
     RenderOptions options;
-    options.error = true;
-    options.threads = 1;
-    RenderReport report;
-    const Image whole = render(scene, options, &report);
+    options.outputs.error = true;
+    options.machine.threads = 1;
+    const auto [whole, report] = render(scene, options);
     const std::uint64_t rays_of_pixel = static_cast<std::uint64_t>(samples * samples);
     EXPECT_GT(report.pixels_interpolated, report.pixels / 4);
     EXPECT_EQ(report.rays, (report.pixels - report.pixels_interpolated) * rays_of_pixel);
     EXPECT_LE(report.largest_error, 1e-2);
-    options.threads = 3;
+    options.machine.threads = 3;
     for (const int preview : {0, 1, 2, 3, 5}) {
-      options.preview = preview;
+      options.monitor.preview = preview;
       std::uint64_t of_tiles = 0;
       double share = 0;
-      options.tile = [&](const TileResult& result) {
+      options.monitor.tile = [&](const TileResult& result) {
         const Tile& tile = result.tile;
         for (int j = 0; j < tile.rows; ++j) {
           for (int i = 0; i < tile.columns; ++i) {
@@ -201,12 +200,12 @@ TEST_F(PixelsBetween, AreTheSameForAnyThreadsAndTiles) {
         }
         return true;
       };
-      options.progress = [&](double now) {
+      options.monitor.progress = [&](double now) {
         EXPECT_GT(now, share);
         share = now;
         return true;
       };
-      const Image other = render(scene, options);
+      const Image other = render(scene, options).image;
       EXPECT_EQ(whole.pixels, other.pixels);
       EXPECT_EQ(whole.error, other.error);
       EXPECT_EQ(of_tiles, report.pixels);
@@ -223,7 +222,7 @@ TEST_F(PixelsBetween, AreNoneWhereTheyAreNotWanted) {
   RenderOptions options;
   const auto between = [&](const Scene& of) {
     RenderReport report;
-    render(of, options, &report);
+    report = render(of, options).report;
     EXPECT_EQ(report.rays + report.pixels_interpolated, report.pixels);
     return report.pixels_interpolated;
   };
@@ -239,21 +238,21 @@ TEST_F(PixelsBetween, AreNoneWhereTheyAreNotWanted) {
     return x + y + z > 0 ? field(x, y, z) : std::numeric_limits<double>::quiet_NaN();
   });
   EXPECT_EQ(between(hole), 0u);
-  options.depth = true;
+  options.outputs.depth = true;
   EXPECT_EQ(between(scene), 0u);
 }
 
 TEST_F(PixelsBetween, AreToldOfAsTheyAreDone) {
   const Scene scene = mostly_between();
   RenderOptions options;
-  options.threads = 1;
+  options.machine.threads = 1;
   std::vector<double> shares;
-  options.progress = [&](double share) {
+  options.monitor.progress = [&](double share) {
     shares.push_back(share);
     return true;
   };
   RenderReport report;
-  render(scene, options, &report);
+  report = render(scene, options).report;
   ASSERT_GT(report.pixels_interpolated, report.pixels / 2);
   // Most of the work is in the pixels that others are taken from.
   const auto traced = static_cast<double>(report.rays) / static_cast<double>(report.pixels);
@@ -264,13 +263,13 @@ TEST_F(PixelsBetween, AreToldOfAsTheyAreDone) {
 
   // Those that a preview shows first are among them.
   for (const int preview : {1, 2, 4}) {
-    options.preview = preview;
+    options.monitor.preview = preview;
     double share = 0;
-    options.progress = [&](double now) {
+    options.monitor.progress = [&](double now) {
       share = now;
       return true;
     };
-    options.tile = [&](const TileResult& result) {
+    options.monitor.tile = [&](const TileResult& result) {
       if (result.tile.level == preview) {
         EXPECT_LE(share, std::pow(0.25, preview));
       }
@@ -283,9 +282,9 @@ TEST_F(PixelsBetween, AreToldOfAsTheyAreDone) {
 TEST_F(PixelsBetween, CanBeCancelled) {
   const Scene scene = mostly_between();
   RenderOptions options;
-  options.threads = 2;
+  options.machine.threads = 2;
   int calls = 0;
-  options.progress = [&](double share) {
+  options.monitor.progress = [&](double share) {
     EXPECT_LT(share, 0.25) << "while the first levels are rendered";
     return ++calls < 3;
   };

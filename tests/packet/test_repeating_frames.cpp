@@ -28,14 +28,14 @@ struct Compared {
 void compare(Scene scene, std::initializer_list<double> tolerances, Compared& compared) {
   const scenes::ReferenceFrame truth = scenes::reference_frame(scene, 1);
   RenderOptions options;
-  options.error = true;
-  options.threads = 1;
+  options.outputs.error = true;
+  options.machine.threads = 1;
   for (const InstructionSet set : packet_sets) {
     if (!test::runs_here(set)) continue;
-    options.instruction_set = set;
+    options.machine.instruction_set = set;
     for (const double tolerance : tolerances) {
       scene.integration.tolerance = tolerance;
-      const Image image = render(scene, options);
+      const Image image = render(scene, options).image;
       for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         const auto said = static_cast<double>(image.error[i]);
         double off = 0;
@@ -128,12 +128,12 @@ TEST(FieldGradients, AlongFacesAreWithinWhatTheySay) {
         scene.integration.tolerance = 1e-4;
         const scenes::ReferenceFrame truth = scenes::reference_frame(scene, 1);
         RenderOptions options;
-        options.error = true;
-        options.threads = 1;
+        options.outputs.error = true;
+        options.machine.threads = 1;
         for (const InstructionSet set : instruction_sets) {
           if (!test::runs_here(set)) continue;
-          options.instruction_set = set;
-          const Image image = render(scene, options);
+          options.machine.instruction_set = set;
+          const Image image = render(scene, options).image;
           for (std::size_t i = 0; i < image.pixels.size(); ++i) {
             const auto said = static_cast<double>(image.error[i]);
             if (said > scene.integration.tolerance) ++doubtful;

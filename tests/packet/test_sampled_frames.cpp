@@ -51,7 +51,7 @@ TEST(SampledFrames, TendToTheExactOne) {
   for (unsigned n = 1; n <= 40; ++n) {
     Scene scene = RandomLayers(n).scene();
     scene.integration.tolerance = 1e-5;
-    const Image exact = render(scene);
+    const Image exact = render(scene).image;
     for (const Method method : methods) {
       SCOPED_TRACE(testing::Message() << "scene " << n << ", " << method_name(method));
       scene.integration.method = method;
@@ -59,9 +59,9 @@ TEST(SampledFrames, TendToTheExactOne) {
         Sums& of = sums[method];
         ++of.scenes;
         scene.integration.step = 0.4;
-        of.coarse += square_difference(render(scene), exact);
+        of.coarse += square_difference(render(scene).image, exact);
         scene.integration.step = 0.05;
-        of.fine += square_difference(render(scene), exact);
+        of.fine += square_difference(render(scene).image, exact);
       }
       scene.integration.method = Method::exact;
     }
@@ -93,11 +93,11 @@ TEST(SampledFrames, EndBesideAMuchFinerLayer) {
   scene.camera.vertical_angle = 30;
   scene.size = {6, 6};
   scene.integration.method = Method::midpoint;
-  const Image alone = render(scene);
+  const Image alone = render(scene).image;
   for (const double size : {1e-3, 1e-12, 1e-25}) {
     scene.layers.resize(1);
     scene.layers.push_back(layer(size));
-    EXPECT_LT(square_difference(render(scene), alone), 1e-6) << size;
+    EXPECT_LT(square_difference(render(scene).image, alone), 1e-6) << size;
   }
 }
 

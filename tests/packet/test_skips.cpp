@@ -99,16 +99,16 @@ TEST_P(PacketSkips, LoseNothing) {
   for (int round = 0; round < 12; ++round) {
     const Scene scene = make_scene();
     RenderOptions options;
-    options.threads = 1;
-    options.error = true;
+    options.machine.threads = 1;
+    options.outputs.error = true;
     Scene precise = scene;
     precise.integration.tolerance = 1e-6;
     precise.integration.precision = Precision::float64;
-    const Image expected = render(precise, options);
+    const Image expected = render(precise, options).image;
     for (const InstructionSet set : packet_sets) {
       if (!test::runs_here(set)) continue;
-      options.instruction_set = set;
-      const Image found = render(scene, options);
+      options.machine.instruction_set = set;
+      const Image found = render(scene, options).image;
       for (std::size_t i = 0; i < found.pixels.size(); ++i) {
         for (std::size_t c = 0; c < 4; ++c) {
           const double off = std::fabs(static_cast<double>(found.pixels[i][c]) -
@@ -136,8 +136,8 @@ TEST(PacketSkip, KeepsRaysInTheFaces) {
     RenderOptions options;
     for (const InstructionSet set : packet_sets) {
       if (!test::runs_here(set)) continue;
-      options.instruction_set = set;
-      for (const auto& pixel : render(scene, options).pixels) {
+      options.machine.instruction_set = set;
+      for (const auto& pixel : render(scene, options).image.pixels) {
         EXPECT_NEAR(pixel[3], opacity, 3e-3) << name_of(set) << ", " << points;
       }
     }
@@ -179,14 +179,14 @@ TEST(PacketSkipsCost, SmoothDataAreCrossedInFewSteps) {
        {std::vector<double>{2.0}, std::vector<double>{1.0, 1.4, 2.0, 2.7}}) {
     const Scene scene = ramp_behind(peaks);
     RenderOptions options;
-    options.threads = 1;
+    options.machine.threads = 1;
     RenderReport one_by_one, packets;
-    options.instruction_set = InstructionSet::scalar;
-    render(scene, options, &one_by_one);
+    options.machine.instruction_set = InstructionSet::scalar;
+    one_by_one = render(scene, options).report;
     for (const InstructionSet set : packet_sets) {
       if (!test::runs_here(set)) continue;
-      options.instruction_set = set;
-      render(scene, options, &packets);
+      options.machine.instruction_set = set;
+      packets = render(scene, options).report;
       EXPECT_GT(packets.cells, 0u);
       EXPECT_LT(packets.cells, one_by_one.cells / 2) << name_of(set) << ", " << peaks.size();
     }

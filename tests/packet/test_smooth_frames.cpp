@@ -209,14 +209,13 @@ TEST_F(SmoothFrames, AreTheSameWhateverElseIsInAPacket) {
   scene.size = {36, 36};
   scene.integration.tolerance = 1e-2;
   RenderOptions options;
-  options.error = true;
-  options.threads = 1;
-  RenderReport report;
-  const Image whole = render(scene, options, &report);
+  options.outputs.error = true;
+  options.machine.threads = 1;
+  const auto [whole, report] = render(scene, options);
   EXPECT_GT(report.spans.strides, 0u);
-  options.threads = 3;
-  options.preview = 3;  // other pixels beside each other
-  const Image other = render(scene, options);
+  options.machine.threads = 3;
+  options.monitor.preview = 3;  // other pixels beside each other
+  const Image other = render(scene, options).image;
   EXPECT_EQ(whole.pixels, other.pixels);
   EXPECT_EQ(whole.error, other.error);
 }
@@ -225,13 +224,13 @@ TEST_F(SmoothFrames, ProvedOnesHaveNone) {
   const auto volume = make_volume({40, 36, 40}, waves(1, 20));
   Scene scene = make_scene(volume, line(1, 40), {0.6, 0.5, -0.4}, false);
   RenderOptions options;
-  options.error = true;
+  options.outputs.error = true;
   RenderReport report;
-  render(scene, options, &report);
+  report = render(scene, options).report;
   EXPECT_GT(report.spans.strides, 0u);
   EXPECT_LT(report.pixels_proved, report.pixels);
   scene.integration.grade = Grade::proved;
-  render(scene, options, &report);
+  report = render(scene, options).report;
   EXPECT_EQ(report.spans.strides, 0u);
   EXPECT_EQ(report.pixels_proved, report.pixels);
 }

@@ -45,17 +45,17 @@ TEST(SurfaceFrames, AreWithinWhatTheySayOfTheReference) {
   for (int n = 0; n < 40; ++n) {
     Scene scene = random_scene(random, n % 4);
     RenderOptions with_depth;
-    with_depth.depth = true;
-    const Image truth = render_reference(scene, with_depth);
+    with_depth.outputs.depth = true;
+    const Image truth = render_reference(scene, with_depth).image;
     for (const InstructionSet set : packet_sets) {
       if (!test::runs_here(set)) continue;
       for (const double tolerance : {2e-2, 2e-3, 1e-4}) {
         scene.integration.tolerance = tolerance;
         RenderOptions options;
-        options.error = options.depth = true;
-        options.threads = 1;
-        options.instruction_set = set;
-        const Image image = render(scene, options);
+        options.outputs.error = options.outputs.depth = true;
+        options.machine.threads = 1;
+        options.machine.instruction_set = set;
+        const Image image = render(scene, options).image;
         for (std::size_t i = 0; i < image.pixels.size(); ++i) {
           const auto said = static_cast<double>(image.error[i]);
           ASSERT_LE(said, tolerance) << "scene " << n << ", pixel " << i;

@@ -199,9 +199,8 @@ struct Strip {
   /// The picture in floats, and the error that it says.
   std::pair<Image, double> picture(double tolerance) {
     mapper->SetTolerance(tolerance);
-    RenderReport report;
     const Scene scene = mapper->GetCore().scene_of(*mapper, {}, *stage.renderer, *volume);
-    Image image = render(scene, {}, &report);
+    auto [image, report] = render(scene);
     return {std::move(image), report.largest_error};
   }
 };
@@ -253,7 +252,7 @@ TEST(VtkFunctions, EmptyOnesAreVtksRamps) {
   fixed->SetInputData(strip.mapper->GetInput());
   const Scene scene =
       plugin::core_of(fixed)->scene_of(*fixed, {}, *strip.stage.renderer, *strip.volume);
-  const Image empty = render(scene);
+  const Image empty = render(scene).image;
   for (const auto& pixel : empty.pixels) EXPECT_EQ(pixel[3], 0);
 }
 

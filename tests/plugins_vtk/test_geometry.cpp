@@ -81,7 +81,7 @@ Image truth_with_ball(Scene scene, const Vec3<double>& center, double radius) {
     }
   }
   scene.backdrop = geometry;
-  return render(scene);
+  return render(scene).image;
 }
 
 struct BallCase {
@@ -221,7 +221,7 @@ TEST(VtkGeometry, ARendererFillsItsHalfOfTheWindow) {
   ASSERT_EQ(scene.size.width, 60);
   ASSERT_EQ(scene.size.height, 48);
   scene.integration.set_tolerance(1e-5);
-  const Image part = render(scene);
+  const Image part = render(scene).image;
   Image truth;
   truth.width = 120;
   truth.height = 64;
@@ -244,10 +244,10 @@ TEST(VtkGeometry, VolumesAreDrawnOneOverTheOther) {
   const Image shown = stage.picture();
   Scene scene = first->GetCore().scene_of(*first, {}, *stage.renderer, *one);
   scene.integration.set_tolerance(1e-5);
-  const Image below = render(scene);
+  const Image below = render(scene).image;
   scene = second->GetCore().scene_of(*second, {}, *stage.renderer, *two);
   scene.integration.set_tolerance(1e-5);
-  Image truth = render(scene);
+  Image truth = render(scene).image;
   for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
     const float clear = 1 - truth.pixels[i][3];
     for (std::size_t c = 0; c < 4; ++c) truth.pixels[i][c] += clear * below.pixels[i][c];
@@ -288,7 +288,7 @@ TEST(VtkGeometry, TheVolumesOfAMultiVolumeMix) {
     scene.layers = layers;
   }
   scene.integration.set_tolerance(2e-4);
-  EXPECT_LE(largest_difference(shown, render(scene)),
+  EXPECT_LE(largest_difference(shown, render(scene).image),
             half_a_step + default_tolerance + rounding + 2 * default_tolerance / 8 + 2e-4);
 }
 

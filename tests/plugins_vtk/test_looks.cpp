@@ -81,7 +81,7 @@ struct Shown {
     const Image picture = stage.picture();
     EXPECT_EQ(stage.gl_errors(), "");
     EXPECT_EQ(mapper->GetPixelsOver(), 0);
-    const Image truth = render(scene_on(stage, std::move(layers)));
+    const Image truth = render(scene_on(stage, std::move(layers))).image;
     EXPECT_LE(largest_difference(picture, truth),
               half_a_step + rounding + mapper->GetTolerance() + 2e-5);
     double brightest = 0;
@@ -138,8 +138,8 @@ TEST(VtkLooks, AProjectionShowsOneNumberByColorAndOpacity) {
       scene_on(shown.stage, {Layer{VolumeContent{volume_of(shown.image), soft_function()}}});
   scene.layers[0].projection = LayerProjection::maximum;
   RenderOptions options;
-  options.values = true;
-  const Image values = render(scene, options);
+  options.outputs.values = true;
+  const Image values = render(scene, options).image;
   // VTK's functions at the number.
   Image truth = values;
   for (std::size_t i = 0; i < values.values.size(); ++i) {
@@ -466,8 +466,10 @@ TEST(VtkLooks, TheFinalColorHasAWindowAndALevel) {
     shown.stage.look();
     const Image picture = shown.stage.picture();
     EXPECT_LE(shown.mapper->GetLargestError(), shown.mapper->GetTolerance());
-    Image truth = render(
-        scene_on(shown.stage, {Layer{VolumeContent{volume_of(shown.image), soft_function(0.2)}}}));
+    Image truth =
+        render(scene_on(shown.stage,
+                        {Layer{VolumeContent{volume_of(shown.image), soft_function(0.2)}}}))
+            .image;
     const double w = double{window}, l = double{level};
     for (auto& pixel : truth.pixels) {
       for (std::size_t c = 0; c < 3; ++c) {

@@ -297,8 +297,7 @@ TEST(ReferenceMesh, ImagesAreTheirRays) {
                          {{-1, 0, {1, 0, 0}}, {1, 3, {0, 1, 1}}});
   scene.camera.position = {3, 4, 5};
   scene.size = {9, 7};
-  RenderReport report;
-  const Image image = render_reference(scene, {}, &report);
+  const auto [image, report] = render_reference(scene);
   EXPECT_GT(report.cells, 40u);
   const ReferenceRays rays(scene);
   const CameraFrame<double> frame = make_camera_frame(scene.camera, scene.size);

@@ -248,9 +248,8 @@ TEST(ReferenceMultivariateRay, PixelsOfASceneAreItsRays) {
   scene.camera.focal_point = {2, 1.5, 1};
   scene.size = {12, 9};
   RenderOptions options;
-  options.depth = true;
-  RenderReport report;
-  const Image image = render_reference(scene, options, &report);
+  options.outputs.depth = true;
+  const auto [image, report] = render_reference(scene, options);
   EXPECT_GT(report.cells, report.rays);
   const CameraFrame<double> frame = make_camera_frame(scene.camera, scene.size);
   int lit = 0;

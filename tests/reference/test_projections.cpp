@@ -59,8 +59,9 @@ void expect_same_values(const Layer& layer, const std::vector<scenes::NamedCamer
       scene.camera = camera.camera;
       scene.size = {33, 31};
       RenderOptions options;
-      options.values = true;
-      const Image image = render(scene, options), truth = render_reference(scene, options);
+      options.outputs.values = true;
+      const Image image = render(scene, options).image,
+                  truth = render_reference(scene, options).image;
       int with_data = 0;
       for (std::size_t p = 0; p < image.values.size(); ++p) {
         const double a = static_cast<double>(image.values[p]),

@@ -44,8 +44,8 @@ TEST(ReferenceRender, PixelsAreTheRaysOfTheCamera) {
     scene.camera.position = {2.5, -3, 4};
     scene.camera.up = {0.3, 1, 0.2};
     RenderOptions options;
-    options.depth = true;
-    const Image image = render_reference(scene, options);
+    options.outputs.depth = true;
+    const Image image = render_reference(scene, options).image;
     const CameraFrame<double> frame = make_camera_frame(scene.camera, scene.size);
     int lit = 0;
     for (int row = 0; row < image.height; ++row) {
@@ -72,7 +72,7 @@ TEST(ReferenceRender, PixelsAreTheRaysOfTheCamera) {
 TEST(ReferenceRender, TopLeftIsUpAndLeft) {
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
     const Scene scene = corner_scene(projection);
-    const Image image = render_reference(scene);
+    const Image image = render_reference(scene).image;
     // The field grows with x (to the right, seen from +z) and with y (up).
     EXPECT_GT(image.at(15, 4)[3], image.at(8, 4)[3]);
     EXPECT_GT(image.at(15, 4)[3], image.at(15, 11)[3]);
@@ -85,16 +85,15 @@ TEST(ReferenceRender, TopLeftIsUpAndLeft) {
 
 TEST(ReferenceRender, IsBitwiseTheSameForAnyNumberOfThreads) {
   RenderOptions options;
-  options.depth = true;
-  options.threads = 1;
-  RenderReport report;
-  const Image one = render_reference(small_scene(), options, &report);
+  options.outputs.depth = true;
+  options.machine.threads = 1;
+  const auto [one, report] = render_reference(small_scene(), options);
   EXPECT_EQ(report.rays, 13u * 9u);
   EXPECT_GT(report.cells, report.rays);
   EXPECT_EQ(report.threads, 1);
   for (const int threads : {2, 3}) {
-    options.threads = threads;
-    const Image many = render_reference(small_scene(), options);
+    options.machine.threads = threads;
+    const Image many = render_reference(small_scene(), options).image;
     EXPECT_EQ(one.pixels, many.pixels);
     EXPECT_EQ(one.depth, many.depth);
   }
@@ -103,14 +102,14 @@ TEST(ReferenceRender, IsBitwiseTheSameForAnyNumberOfThreads) {
 TEST(ReferenceRender, ReportsProgressAndStopsWhenAsked) {
   RenderOptions options;
   double last = 0;
-  options.progress = [&](double done) {
+  options.monitor.progress = [&](double done) {
     EXPECT_GT(done, last);
     last = done;
     return true;
   };
   render_reference(small_scene(), options);
   EXPECT_EQ(last, 1);
-  options.progress = [](double) { return false; };
+  options.monitor.progress = [](double) { return false; };
   EXPECT_THROW(render_reference(small_scene(), options), Cancelled);
 }
 
@@ -148,18 +147,18 @@ TEST(ReferenceRender, RefusesWhatRenderRefuses) {
     EXPECT_THROW(render_reference(scene), Error);
   }
   RenderOptions options;
-  options.threads = -1;
+  options.machine.threads = -1;
   EXPECT_THROW(render_reference(small_scene(), options), Error);
 }
 
 /// Method, precision, step, tolerance and grade are for the fast path only.
 TEST(ReferenceRender, LooksAtTheFieldAndTheCameraOnly) {
-  const Image image = render_reference(small_scene());
+  const Image image = render_reference(small_scene()).image;
   Scene other = small_scene();
   other.integration = {Method::rectangle, Precision::float64, 7};
-  EXPECT_EQ(image.pixels, render_reference(other).pixels);
+  EXPECT_EQ(image.pixels, render_reference(other).image.pixels);
   other.integration = {Method::exact, Precision::automatic, 7, 0.1, Grade::proved};
-  EXPECT_EQ(image.pixels, render_reference(other).pixels);
+  EXPECT_EQ(image.pixels, render_reference(other).image.pixels);
 }
 
 /// A pixel of n × n samples is the mean of the n × n pixels of an image that much finer.
@@ -172,10 +171,9 @@ TEST(ReferenceRender, SamplesAreThePixelsOfAFinerImage) {
       Scene fine = scene;
       fine.size = {8 * n, 5 * n};
       fine.samples = 1;
-      const Image expected = render_reference(fine);
+      const Image expected = render_reference(fine).image;
       scene.samples = n;
-      RenderReport report;
-      const Image image = render_reference(scene, {}, &report);
+      const auto [image, report] = render_reference(scene);
       EXPECT_EQ(report.rays, static_cast<std::uint64_t>(8 * 5 * n * n));
       double largest = 0;
       for (int row = 0; row < 5; ++row) {
@@ -221,12 +219,12 @@ TEST(ReferenceRender, DepthOfSamplesIsThatOfTheNearest) {
   scene.size = {6, 4};
   scene.samples = 3;
   RenderOptions options;
-  options.depth = true;
-  const Image image = render_reference(scene, options);
+  options.outputs.depth = true;
+  const Image image = render_reference(scene, options).image;
   Scene fine = scene;
   fine.size = {18, 12};
   fine.samples = 1;
-  const Image samples = render_reference(fine, options);
+  const Image samples = render_reference(fine, options).image;
   int partly_empty = 0;
   for (std::size_t p = 0; p < image.depth.size(); ++p) {
     float nearest = std::numeric_limits<float>::infinity(), farthest = 0;

@@ -61,10 +61,9 @@ void expect_exact_rays(const NamedScene& named) {
 
 void expect_exact(const NamedScene& named) {
   RenderOptions options;
-  options.depth = true;
+  options.outputs.depth = true;
   Scene scene = named.scene;
-  RenderReport reference_report;
-  const Image reference = render_reference(scene, options, &reference_report);
+  const auto [reference, reference_report] = render_reference(scene, options);
   float most = 0;
   for (const auto& pixel : reference.pixels) most = std::max(most, pixel[3]);
   EXPECT_GT(most, 0.01f) << named.name << ": there is nothing to see, so nothing is tested";
@@ -74,8 +73,7 @@ void expect_exact(const NamedScene& named) {
         std::tuple{Precision::float32, "float", float_bound}}) {
     scene.integration.precision = precision;
     scene.integration.tolerance = smallest_tolerance;
-    RenderReport report;
-    const Image image = render(scene, options, &report);
+    const auto [image, report] = render(scene, options);
     const Difference error = difference(image, reference);
     std::printf("[ accuracy ] %-48s %-6s %s; %.2f s, reference %.2f s\n", named.name.c_str(), label,
                 error.text().c_str(), report.seconds, reference_report.seconds);

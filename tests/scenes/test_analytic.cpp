@@ -23,9 +23,9 @@ void expect_known_pixels(Precision precision, const Bounds& bounds) {
     scene.integration.precision = precision;
     scene.integration.tolerance = smallest_tolerance;
     RenderOptions options;
-    options.depth = true;
-    options.threads = 1;
-    const Image image = render(scene, options);
+    options.outputs.depth = true;
+    options.machine.threads = 1;
+    const Image image = render(scene, options).image;
     const auto& pixel = image.at(0, 0);
     const double truth[4] = {ray.radiance.r, ray.radiance.g, ray.radiance.b, ray.opacity};
     for (std::size_t c = 0; c < 4; ++c) {

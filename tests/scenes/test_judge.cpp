@@ -129,7 +129,7 @@ TEST(ReferenceFrame, RoundsToTheReferenceImage) {
   for (const int samples : {1, 2}) {
     const Scene scene = small_scene(samples);
     const ReferenceFrame frame = reference_frame(scene, 2);
-    const Image image = render_reference(scene);
+    const Image image = render_reference(scene).image;
     ASSERT_EQ(frame.pixels.size(), image.pixels.size());
     for (std::size_t p = 0; p < frame.pixels.size(); ++p) {
       for (std::size_t c = 0; c < 4; ++c) {

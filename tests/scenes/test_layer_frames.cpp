@@ -16,9 +16,11 @@ namespace {
 
 Image rendered(const Scene& scene, RenderReport* report = nullptr) {
   RenderOptions options;
-  options.threads = 2;
-  options.error = options.depth = true;
-  return render(scene, options, report);
+  options.machine.threads = 2;
+  options.outputs.error = options.outputs.depth = true;
+  RenderResult frame = render(scene, options);
+  if (report != nullptr) *report = std::move(frame.report);
+  return std::move(frame.image);
 }
 
 /// Pixels of a and b differ by no more than both say.

@@ -11,8 +11,8 @@ namespace {
 TEST(Threads, AnyNumberGivesBitwiseTheSameImage) {
   Scene scene = scenes::ray_splitting_scene(65, {83, 61}).scene;
   RenderOptions options;
-  options.depth = true;
-  options.error = true;
+  options.outputs.depth = true;
+  options.outputs.error = true;
   const auto with = [](Method method, Precision precision, double tolerance, Grade grade) {
     Integration integration;
     integration.method = method;
@@ -29,13 +29,11 @@ TEST(Threads, AnyNumberGivesBitwiseTheSameImage) {
         with(Method::simpson, Precision::float32, 1e-4, Grade::estimated),
         with(Method::simpson, Precision::float64, 1e-4, Grade::estimated)}) {
     scene.integration = integration;
-    options.threads = 1;
-    RenderReport one_report;
-    const Image one = render(scene, options, &one_report);
+    options.machine.threads = 1;
+    const auto [one, one_report] = render(scene, options);
     for (const int threads : {2, 3}) {
-      options.threads = threads;
-      RenderReport report;
-      const Image many = render(scene, options, &report);
+      options.machine.threads = threads;
+      const auto [many, report] = render(scene, options);
       EXPECT_EQ(one.pixels, many.pixels) << threads << " threads";
       EXPECT_EQ(one.depth, many.depth) << threads << " threads";
       EXPECT_EQ(one.error, many.error) << threads << " threads";

@@ -24,9 +24,8 @@ void measure_sampling(Scene scene, const ReferenceFrame& reference, const Matrix
     return;
   }
   RenderOptions render_options;
-  render_options.threads = options.threads;
-  RenderReport report;
-  Image image = render(scene, render_options, &report);
+  render_options.machine.threads = options.threads;
+  auto [image, report] = render(scene, render_options);
   image.error.assign(image.pixels.size(), 0);
   image.proved.assign(image.pixels.size(), 0);
   row.sampling_per_ray = static_cast<double>(report.cells) / static_cast<double>(report.rays);
@@ -52,9 +51,9 @@ MatrixRow measure_row(const std::string& name, const Exhibit& exhibit, std::size
   MatrixRow row{name, exhibit.cameras[camera].name, reference.pixels.size(), 0, 0, 0, {}};
   if (options.sampling) measure_sampling(scene, reference, options, row);
   RenderOptions render_options;
-  render_options.threads = options.threads;
-  render_options.error = true;
-  render_options.device = options.device;
+  render_options.machine.threads = options.threads;
+  render_options.outputs.error = true;
+  render_options.machine.device = options.device;
   for (const double tolerance : options.tolerances) {
     for (const Grade grade : {Grade::estimated, Grade::proved}) {
       if (grade == Grade::proved && tolerance < options.least_proved) continue;
@@ -62,8 +61,9 @@ MatrixRow measure_row(const std::string& name, const Exhibit& exhibit, std::size
       scene.integration.tolerance = tolerance;
       scene.integration.grade = grade;
       MatrixCell cell{tolerance, grade, {}, {}};
-      const Image image = render(scene, render_options, &cell.report);
-      cell.verdict = judge(image, reference, tolerance);
+      RenderResult frame = render(scene, render_options);
+      cell.report = std::move(frame.report);
+      cell.verdict = judge(frame.image, reference, tolerance);
       row.brightest = cell.verdict.brightest;
       row.cells.push_back(std::move(cell));
     }

@@ -50,7 +50,7 @@ TEST(SceneState, WhatIsSavedRendersToTheSameBits) {
   state.edit(edit_of({}, "background", "\"#203040\"", 5));
   state.set_tolerance(1e-3);
   const Scene again = make_scene(parse_scene(state.saved(), "saved"));
-  EXPECT_EQ(render(state.scene()).pixels, render(again).pixels);
+  EXPECT_EQ(render(state.scene()).image.pixels, render(again).image.pixels);
   EXPECT_EQ(again.integration.tolerance, 1e-3);
 }
 
@@ -182,8 +182,8 @@ TEST(SceneState, GaussiansBecomeMatricesOfTheSameFunction) {
   for (const Json& gaussian : saved["layers"][0]["transfer_function"]["gaussians"]) {
     EXPECT_TRUE(gaussian.contains("matrix"));
   }
-  EXPECT_EQ(render(make_scene(parse_scene(state.saved(), "saved"))).pixels,
-            render(state.scene()).pixels);
+  EXPECT_EQ(render(make_scene(parse_scene(state.saved(), "saved"))).image.pixels,
+            render(state.scene()).image.pixels);
 }
 
 TEST(SceneState, TheFunctionFromTheDataIsSeenBesideSurfaces) {
@@ -216,8 +216,8 @@ TEST(SceneState, ReadsAnotherSource) {
   state.set_source(
       0, [](LayerDescription& layer) { layer.field.builtin = "ramp"; }, false);
   EXPECT_GT(volume_of().transfer_function->points().size(), 1U);
-  EXPECT_EQ(render(make_scene(parse_scene(state.saved(), "saved"))).pixels,
-            render(state.scene()).pixels);
+  EXPECT_EQ(render(make_scene(parse_scene(state.saved(), "saved"))).image.pixels,
+            render(state.scene()).image.pixels);
 }
 
 TEST(SceneState, IgnoresCamerasWithoutRays) {

@@ -41,7 +41,7 @@ std::shared_ptr<const Image> shrunk(const Image& backdrop, ImageSize size) {
 
 }  // namespace
 
-double estimate_range(const Scene& scene, const RenderOptions& options) {
+double estimate_range(const Scene& scene, const Machine& machine, const FrameMonitor& monitor) {
   constexpr int longest_side = 96;
   Scene small = scene;
   small.samples = 1;
@@ -58,22 +58,22 @@ double estimate_range(const Scene& scene, const RenderOptions& options) {
     }
   }
   RenderOptions plain;
-  plain.threads = options.threads;
-  plain.progress = options.progress;
+  plain.machine = machine;
+  plain.monitor.progress = monitor.progress;
+  plain.monitor.stop = monitor.stop;
   // The range is known to an eighth.
   constexpr double sharper = 8, next = 1.0 / 64;
   small.integration.tolerance = default_tolerance;
   for (;;) {
-    const double largest = largest_channel(render(small, plain));
+    const double largest = largest_channel(render(small, plain).image);
     const double tolerance = small.integration.tolerance;
     if (largest >= sharper * tolerance || tolerance <= smallest_tolerance) return largest;
     small.integration.set_tolerance(std::max(tolerance * next, smallest_tolerance));
   }
 }
 
-RelativePicture render_relative(
-    double share, double estimated_range,
-    const std::function<Image(double tolerance, RenderReport& report)>& render_at) {
+RelativePicture render_relative(double share, double estimated_range,
+                                const std::function<RenderResult(double tolerance)>& render_at) {
   // The range is not known before the picture is; a little less makes a second rendering rare.
   constexpr double margin = 0.9;
   constexpr int most_renderings = 6;
@@ -81,8 +81,9 @@ RelativePicture render_relative(
   double range = estimated_range, seconds = 0;
   for (int i = 0; i < most_renderings; ++i) {
     picture.tolerance = std::clamp(margin * share * range, 1e-30, largest_tolerance);
-    picture.report = {};
-    picture.image = render_at(picture.tolerance, picture.report);
+    RenderResult frame = render_at(picture.tolerance);
+    picture.image = std::move(frame.image);
+    picture.report = std::move(frame.report);
     seconds += picture.report.seconds;
     picture.largest = largest_channel(picture.image);
     const double wanted = share * picture.largest;

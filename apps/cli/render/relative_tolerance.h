@@ -16,7 +16,7 @@ double largest_channel(const Image& image);
 /// Returns about the largest channel that the scene's picture will have, from renderings of at most
 /// 96 x 96 pixels at tolerances that decrease until the range shows. May miss what is narrower
 /// than their pixels. Throws what render() throws.
-double estimate_range(const Scene& scene, const RenderOptions& options);
+double estimate_range(const Scene& scene, const Machine& machine, const FrameMonitor& monitor);
 
 /// A picture whose tolerance is a share of its own range.
 struct RelativePicture {
@@ -30,10 +30,9 @@ struct RelativePicture {
 
 /// Renders at the tolerance share · range: first with the estimated range, and again as long as the
 /// picture's own range turns out to be smaller. `render_at` renders the whole picture at a
-/// tolerance, or at the nearest one within the limits, and fills the report.
-RelativePicture render_relative(
-    double share, double estimated_range,
-    const std::function<Image(double tolerance, RenderReport& report)>& render_at);
+/// tolerance, or at the nearest one within the limits.
+RelativePicture render_relative(double share, double estimated_range,
+                                const std::function<RenderResult(double tolerance)>& render_at);
 
 /// "1 %"
 std::string percent_text(double share);

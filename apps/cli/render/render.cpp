@@ -80,19 +80,17 @@ auto unless_interrupted(Work&& work) {
   }
 }
 
-Image render_image(const RenderArguments& arguments, const PreparedScene& prepared,
-                   RenderReport& report) {
+RenderResult render_image(const RenderArguments& arguments, const PreparedScene& prepared) {
   const Scene& scene = prepared.scene;
   RenderOptions options = options_of(arguments, prepared);
-  options.device = device_of(arguments);
+  options.machine.device = device_of(arguments);
   ProgressLine progress(!arguments.quiet);
-  options.progress = [&](double share_done) {
+  options.monitor.progress = [&](double share_done) {
     progress.show(share_done);
     return !InterruptGuard::interrupted();
   };
   return unless_interrupted([&] {
-    return arguments.reference ? render_reference(scene, options, &report)
-                               : render(scene, options, &report);
+    return arguments.reference ? render_reference(scene, options) : render(scene, options);
   });
 }
 
@@ -112,23 +110,23 @@ void write_error_map(Image& image, double tolerance, const std::string& path) {
 }
 
 /// At the tolerance that is the wanted share of the picture's range.
-Image render_at_share(const RenderArguments& arguments, PreparedScene& prepared,
-                      RenderReport& report, std::optional<std::string>& over) {
+RenderResult render_at_share(const RenderArguments& arguments, PreparedScene& prepared,
+                             std::optional<std::string>& over) {
+  const RenderOptions quiet = quiet_options_of(arguments);
   const double range = unless_interrupted(
-      [&] { return estimate_range(prepared.scene, quiet_options_of(arguments)); });
+      [&] { return estimate_range(prepared.scene, quiet.machine, quiet.monitor); });
   RelativePicture picture =
-      render_relative(*prepared.relative_tolerance, range, [&](double tolerance, RenderReport& of) {
+      render_relative(*prepared.relative_tolerance, range, [&](double tolerance) {
         set_scene_tolerance(prepared, tolerance);
-        return render_image(arguments, prepared, of);
+        return render_image(arguments, prepared);
       });
-  report = picture.report;
   over = picture.over;
   if (!arguments.quiet && !arguments.json) {
     print_note(fmt::format("tolerance {:.3g}: within {} of the largest channel, {:.3g}",
                            prepared.scene.integration.tolerance,
                            percent_text(*prepared.relative_tolerance), picture.largest));
   }
-  return std::move(picture.image);
+  return {std::move(picture.image), std::move(picture.report)};
 }
 
 int run_render(const RenderArguments& arguments) {
@@ -138,8 +136,9 @@ int run_render(const RenderArguments& arguments) {
   const InterruptGuard guard;
   if (arguments.renders() || !arguments.save_scene.empty()) {
     place_camera(arguments, prepared, [&](const Scene& scene) {
+      const RenderOptions quiet = quiet_options_of(arguments);
       return unless_interrupted(
-          [&] { return framed_camera(scene, scene.camera, quiet_options_of(arguments)); });
+          [&] { return framed_camera(scene, scene.camera, quiet.machine, quiet.monitor); });
     });
   }
   const auto& function = prepared.description.layers.front().transfer_function;
@@ -155,9 +154,11 @@ int run_render(const RenderArguments& arguments) {
 
   RenderedPicture picture;
   if (arguments.renders()) {
-    picture.image = prepared.relative_tolerance
-                        ? render_at_share(arguments, prepared, picture.report, picture.over)
-                        : render_image(arguments, prepared, picture.report);
+    RenderResult frame = prepared.relative_tolerance
+                             ? render_at_share(arguments, prepared, picture.over)
+                             : render_image(arguments, prepared);
+    picture.image = std::move(frame.image);
+    picture.report = std::move(frame.report);
     if (!picture.over) {
       picture.over = over_tolerance(picture.report, prepared.scene.integration);
     }
@@ -170,21 +171,21 @@ int run_render(const RenderArguments& arguments) {
 
 RenderOptions quiet_options_of(const RenderArguments& arguments) {
   RenderOptions options;
-  options.threads = arguments.threads;
-  options.progress = [](double) { return !InterruptGuard::interrupted(); };
+  options.machine.threads = arguments.threads;
+  options.monitor.progress = [](double) { return !InterruptGuard::interrupted(); };
   return options;
 }
 
 RenderOptions options_of(const RenderArguments& arguments, const PreparedScene& prepared) {
   RenderOptions options;
-  options.threads = arguments.threads;
-  options.depth = !arguments.depth_picture.empty();
-  options.error = !arguments.error_map.empty();
-  options.values = !arguments.values.empty();
+  options.machine.threads = arguments.threads;
+  options.outputs.depth = !arguments.depth_picture.empty();
+  options.outputs.error = !arguments.error_map.empty();
+  options.outputs.values = !arguments.values.empty();
   for (const std::string& path : arguments.outputs) {
     if (extension_of(path) != ".exr") continue;
-    options.depth = true;
-    options.error = prepared.knows_its_error(arguments);
+    options.outputs.depth = true;
+    options.outputs.error = prepared.knows_its_error(arguments);
   }
   return options;
 }

@@ -111,10 +111,10 @@ class RankRun {
     find_labels(prepared);
     place_camera(bricks.tree, prepared);
     RenderedPicture picture;
-    RankReport report;
-    picture.image = render_frame(bricks.tree, prepared, report);
-    picture.report = report.frame;
-    picture.ranks_json = ranks_json(ranks_, report);
+    RankResult frame = render_frame(bricks.tree, prepared);
+    picture.image = std::move(frame.image);
+    picture.report = frame.report.frame;
+    picture.ranks_json = ranks_json(ranks_, frame.report);
     picture.notes = std::move(bricks.notes);
     picture.over = over_tolerance(picture.report, prepared.scene.integration);
     // The first rank alone has the report of the whole picture.
@@ -187,7 +187,7 @@ class RankRun {
       return framed_camera(scene.camera, scene.size, [&](const Camera& camera, ImageSize size) {
         draft.camera = camera;
         draft.size = size;
-        Image image = render(ranks_, tree, draft, options);
+        Image image = render(ranks_, tree, draft, options).image;
         image.width = size.width;
         image.height = size.height;
         image.pixels.resize(static_cast<std::size_t>(size.width) *
@@ -198,14 +198,14 @@ class RankRun {
     });
   }
 
-  Image render_frame(const BrickTree& tree, const PreparedScene& prepared, RankReport& report) {
+  RankResult render_frame(const BrickTree& tree, const PreparedScene& prepared) {
     RenderOptions options = options_of(arguments_, prepared);
     ProgressLine progress(!arguments_.quiet);
-    options.progress = [&](double share_done) {
+    options.monitor.progress = [&](double share_done) {
       progress.show(share_done);
       return !InterruptGuard::interrupted();
     };
-    return render(ranks_, tree, prepared.scene, options, &report);
+    return render(ranks_, tree, prepared.scene, options);
   }
 
   RenderArguments arguments_;

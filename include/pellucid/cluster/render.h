@@ -28,23 +28,28 @@ struct RankReport {
   std::uint64_t parts_again = 0;
 };
 
+/// A frame of ranks and how it was made.
+struct RankResult {
+  Image image;
+  RankReport report;
+};
+
 /// Renders a frame of a scene whose data lie on several ranks: on rank n in brick n of the tree,
 /// which is the same on all ranks. `own` is the scene with this rank's data: every layer is there
 /// on each rank, with the same functions, and has at least the values around the brick
 /// (sub_scene()). Rank 0 returns the image, as render() would of the whole; the others an image of
 /// no size. Each pixel is within the scene's tolerance.
 ///
-/// `options.progress` is called on each rank, on rank 0 with the fraction that all have done. If it
-/// returns false on any, or one rank fails, all of them stop and throw: Cancelled, or Error with
-/// the rank and its message. Throws Error if the ranks disagree about the frame or the version.
-/// `options.preview`, `tile` and `region` are not used.
-Image render(Communicator& ranks, const BrickTree& tree, const Scene& own,
-             const RenderOptions& options = {}, RankReport* report = nullptr);
+/// `options.monitor.progress` is called on each rank, on rank 0 with the fraction that all have
+/// done. If it returns false on any, or one rank fails, all of them stop and throw: Cancelled, or
+/// Error with the rank and its message. Throws Error if the ranks disagree about the frame or the
+/// version. The options' preview, tiles and region are not used.
+RankResult render(Communicator& ranks, const BrickTree& tree, const Scene& own,
+                  const RenderOptions& options = {});
 
 /// Returns the same of a scene that every rank has whole. Each renders its brick without a copy of
 /// the rest: for tests, and data that are mapped files.
-Image render(Communicator& ranks, const Scene& whole, const RenderOptions& options = {},
-             RankReport* report = nullptr);
+RankResult render(Communicator& ranks, const Scene& whole, const RenderOptions& options = {});
 
 /// An error that all ranks know of: each throws the same.
 class AgreedError : public Error {

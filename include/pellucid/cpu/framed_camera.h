@@ -26,9 +26,10 @@ using DraftRenderer = std::function<Image(const Camera&, ImageSize)>;
 Camera framed_camera(const Camera& start, ImageSize size, const DraftRenderer& draft);
 
 /// Returns the same of a scene, whose camera is not looked at: drafts are unlit, without background
-/// and backdrop. Of `options` the threads, the progress and the stop token are used. Throws Error
-/// if the scene fails its checks, and Cancelled.
-Camera framed_camera(const Scene& scene, const Camera& start, const RenderOptions& options = {});
+/// and backdrop, and neither previewed nor told tile by tile. Throws Error if the scene fails its
+/// checks, and Cancelled.
+Camera framed_camera(const Scene& scene, const Camera& start, const Machine& machine = {},
+                     const FrameMonitor& monitor = {});
 
 /// Returns the scene that a draft renders: `scene` without light, background and backdrop, to a
 /// coarse tolerance.

@@ -35,7 +35,7 @@ class RunningFrame {
   /// Progress of the frame.
   struct State {
     double fraction = 0;  ///< share of the pixels that are final
-    /// The finest level of RenderOptions::preview that is complete; -1: none is yet. Level n has
+    /// The finest level of FrameMonitor::preview that is complete; -1: none is yet. Level n has
     /// every 2ⁿ-th pixel along each axis; 0 is the image.
     int level = -1;
     bool finished = false;
@@ -45,9 +45,9 @@ class RunningFrame {
   /// nearest coarser one, or nothing. Without depth, error and metadata.
   Image look() const;
 
-  /// Waits for the threads and returns the image; `report` may be null. Throws Error if the scene
-  /// failed its checks, and Cancelled. Only the first call returns the image; look() has none then.
-  Image wait(RenderReport* report = nullptr);
+  /// Waits for the threads and returns the image and its report. Throws Error if the scene failed
+  /// its checks, and Cancelled. Only the first call returns the image; look() has none then.
+  RenderResult wait();
 
  private:
   friend class Renderer;
@@ -73,15 +73,17 @@ class Renderer {
   ~Renderer();
 
   /// Renders a frame on this thread and others, as pellucid::render() does.
-  Image render(const Scene& scene, const RenderOptions& options = {},
-               RenderReport* report = nullptr);
-  /// Renders some pixels of a frame of a region (RenderOptions::region) again, each to a tolerance
+  RenderResult render(const Scene& scene, const RenderOptions& options = {});
+  /// Renders the same into memory of the caller, as pellucid::render_into() does.
+  RenderReport render_into(const ImageView& target, const Scene& scene,
+                           const RenderOptions& options = {});
+  /// Renders some pixels of a frame of a region (FrameOutputs::region) again, each to a tolerance
   /// of its own in place of the region's allowance. Returns an image of one row with a pixel for
-  /// each request, with errors. Uses of the options the threads, the region, the progress and the
-  /// stop token. `report`, unless null, receives the work. Throws Error unless there is a region,
-  /// and as render() does.
-  Image render_pixels(const Scene& scene, const RenderOptions& options,
-                      const std::vector<PixelRequest>& requests, RenderReport* report = nullptr);
+  /// each request, with errors, and a report of the work. Uses of the options the threads, the
+  /// region, the progress and the stop token. Throws Error unless there is a region, and as
+  /// render() does.
+  RenderResult render_pixels(const Scene& scene, const RenderOptions& options,
+                             const std::vector<PixelRequest>& requests);
   /// Starts a frame and returns at once. The frame may outlive the renderer. Callbacks of the
   /// options are called by the frame's threads.
   RunningFrame start(Scene scene, RenderOptions options = {});

@@ -7,6 +7,7 @@
 
 #include "pellucid/scene/background.h"
 #include "pellucid/scene/image.h"
+#include "pellucid/scene/image_view.h"
 
 namespace pellucid {
 
@@ -21,7 +22,7 @@ enum class DisplayLayout {
 std::vector<std::uint8_t> display_bytes(const Image& image, const Background& background,
                                         DisplayLayout layout = DisplayLayout::rgb);
 /// Returns the same of every `stride`-th pixel along each axis, from pixel (0, 0).
-std::vector<std::uint8_t> display_bytes(const Image& image, const Background& background,
+std::vector<std::uint8_t> display_bytes(const ImageView& image, const Background& background,
                                         DisplayLayout layout, int stride);
 /// Returns sRGB signals and alpha, which is not premultiplied. Pixels without opacity are black.
 std::vector<std::uint8_t> transparent_display_bytes(const Image& image);

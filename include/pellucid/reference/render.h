@@ -20,12 +20,11 @@ namespace pellucid {
 /// It shares no kernel with the fast path: ray-plane sorting, search of tetrahedra (each is
 /// intersected on its own), interpolation, gradients, transfer-function look-up, crossings, light
 /// and quadrature are its own, and so are the extremes and means of projections. Only RenderOptions
-/// and the report are shared with cpu/, and voxel_of() and flat_gradient() with scene/.
+/// and the result are shared with cpu/, and voxel_of() and flat_gradient() with scene/.
 ///
 /// Method, precision, step, tolerance and grade of the scene are ignored, but refused if render()
 /// refuses them. A pixel is the mean of its samples. Throws whatever pellucid::render() throws.
-Image render_reference(const Scene& scene, const RenderOptions& options = {},
-                       RenderReport* report = nullptr);
+RenderResult render_reference(const Scene& scene, const RenderOptions& options = {});
 
 /// The result of one ray, in double. The ray ends where the transparency falls below 1e-16; the
 /// optical depth is that of the part in front.

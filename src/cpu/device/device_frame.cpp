@@ -25,7 +25,8 @@ constexpr std::int64_t rays_of_launch = 1 << 18;
 
 /// Returns the frame's pixels as few tiles, level after level, each a launch.
 std::vector<Tile> make_launches(const Scene& scene, const RenderOptions& options) {
-  const bool whole = !options.stop.stop_possible() && !options.progress && !options.tile;
+  const bool whole =
+      !options.monitor.stop.stop_possible() && !options.monitor.progress && !options.monitor.tile;
   const std::int64_t rays = std::int64_t{scene.samples} * scene.samples;
   std::vector<Tile> launches;
   const auto add = [&](int column, int row, int stride, int level) {
@@ -41,9 +42,9 @@ std::vector<Tile> make_launches(const Scene& scene, const RenderOptions& options
                           level});
     }
   };
-  for (int level = options.preview; level >= 0; --level) {
+  for (int level = options.monitor.preview; level >= 0; --level) {
     const int edge = 1 << level;
-    if (level == options.preview) {
+    if (level == options.monitor.preview) {
       add(0, 0, edge, level);
     } else {
       add(edge, 0, 2 * edge, level);
@@ -57,8 +58,8 @@ std::vector<Tile> make_launches(const Scene& scene, const RenderOptions& options
 /// A frame on its way.
 class DeviceFrame {
  public:
-  DeviceFrame(const Frame& frame, const RenderOptions& options, KeptDevice& device, Image& image,
-              RenderReport& report)
+  DeviceFrame(const Frame& frame, const RenderOptions& options, KeptDevice& device,
+              const ImageView& image, RenderReport& report)
       : frame_(frame),
         options_(options),
         device_(device),
@@ -68,11 +69,11 @@ class DeviceFrame {
         scene_(resident(frame)),
         task_(device.prepare(frame.scene.size, view_.depth != nullptr, view_.error != nullptr)) {}
 
-  void render(const Image& image) {
+  void render(const ImageView& image) {
     const std::vector<Tile> launches = make_launches(frame_.scene, options_);
     Progress progress(options_, image, launches);
     for (const Tile& tile : launches) {
-      if (options_.stop.stop_requested()) throw Cancelled();
+      if (options_.monitor.stop.stop_requested()) throw Cancelled();
       follow(tile);
       progress.finish_tile(tile, pixel_count(tile));
       if (progress.cancelled()) throw Cancelled();
@@ -88,7 +89,7 @@ class DeviceFrame {
     scene.camera = frame.camera;
     scene.samples = frame.scene.samples;
     scene.limits = {frame.reserved, frame.largest_color, frame.scene.integration.tolerance};
-    scene.with_depth = options_.depth;
+    scene.with_depth = options_.outputs.depth;
     if (frame.scene.backdrop) {
       scene.backdrop_depth = frame.scene.backdrop->depth.data();
       scene.backdrop_color = frame.scene.backdrop->pixels.data()->data();
@@ -164,13 +165,13 @@ class DeviceFrame {
       const Tile pixel{static_cast<int>(pixels[i] % width), static_cast<int>(pixels[i] / width), 1,
                        1};
       RenderReport part;
-      render_tile(frame_, pixel, {1, nullptr, options_.stop, &speed}, view_, part);
-      if (options_.stop.stop_requested()) return false;
+      render_tile(frame_, pixel, {1, nullptr, options_.monitor.stop, &speed}, view_, part);
+      if (options_.monitor.stop.stop_requested()) return false;
       const std::lock_guard lock(mutex);
       add(report_, part);
       return true;
     });
-    if (options_.stop.stop_requested()) throw Cancelled();
+    if (options_.monitor.stop.stop_requested()) throw Cancelled();
     for (const std::uint32_t pixel : pixels) put_back(pixel);
   }
 
@@ -187,7 +188,7 @@ class DeviceFrame {
 }  // namespace
 
 std::string reason_for_cpu(const Frame& frame, const RenderOptions& options) {
-  if (options.values || frame.projected != nullptr) return "projections";
+  if (options.outputs.values || frame.projected != nullptr) return "projections";
   if (frame.only_layer == nullptr) return "several layers or clips";
   const Layer& layer = frame.only_layer->layer();
   if (frame.scene.backdrop && !std::holds_alternative<VolumeContent>(layer.content)) {
@@ -197,7 +198,7 @@ std::string reason_for_cpu(const Frame& frame, const RenderOptions& options) {
 }
 
 void render_on_device(const Frame& frame, const RenderOptions& options, KeptDevice& device,
-                      Image& image, RenderReport& report) {
+                      const ImageView& image, RenderReport& report) {
   const std::lock_guard lock(device.in_use);
   DeviceFrame(frame, options, device, image, report).render(image);
   device.arrays().end_frame();

@@ -15,6 +15,6 @@ std::string reason_for_cpu(const Frame& frame, const RenderOptions& options);
 /// what it did into the report. Pixels that the device leaves go to the CPU. Throws Cancelled, and
 /// Error if the device fails.
 void render_on_device(const Frame& frame, const RenderOptions& options, KeptDevice& device,
-                      Image& image, RenderReport& report);
+                      const ImageView& image, RenderReport& report);
 
 }  // namespace pellucid

@@ -32,7 +32,8 @@ std::vector<double> find_depths(const Scene& scene, const RenderOptions& options
                                 const std::vector<DepthRequest>& requests) {
   check_data(scene);
   check_integration(scene);
-  const int threads = options.threads > 0 ? options.threads : default_thread_count();
+  const int threads =
+      options.machine.threads > 0 ? options.machine.threads : default_thread_count();
   LayerSetups setups;
   const Frame frame(scene, options, threads, setups);
   std::vector<double> found(requests.size(), std::numeric_limits<double>::infinity());
@@ -51,9 +52,9 @@ std::vector<double> find_depths(const Scene& scene, const RenderOptions& options
     }
     const std::vector<double> positions = frame.tracer->find_depths(parts, depths);
     for (std::size_t i = 0; i < of.size(); ++i) found[of[i]] = positions[i];
-    return !options.stop.stop_requested();
+    return !options.monitor.stop.stop_requested();
   });
-  if (options.stop.stop_requested()) throw Cancelled();
+  if (options.monitor.stop.stop_requested()) throw Cancelled();
   return found;
 }
 

@@ -79,10 +79,10 @@ PixelBox pixels_of(const CameraFrame<double>& camera, const std::array<Vec3<doub
 
 Frame::Frame(const Scene& described, const RenderOptions& options, int threads, LayerSetups& kept)
     : scene(described),
-      region(options.region),
+      region(options.outputs.region),
       camera(make_camera_frame(described.camera, described.size)),
       tolerance(0),
-      reserved(options.region ? 0 : approximation_error(described)),
+      reserved(options.outputs.region ? 0 : approximation_error(described)),
       largest_color(pellucid::largest_color(described)) {
   seen = {0, camera.width, 0, camera.height};
   if (region && region->corners) seen = pixels_of(camera, *region->corners);
@@ -114,7 +114,7 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads, 
   }
   kept.keep_only(scene);
   if (!layers.empty() || projections.empty()) {
-    tracer = make_scene_tracer(std::move(clipped), scene.lights, wanted, options.depth);
+    tracer = make_scene_tracer(std::move(clipped), scene.lights, wanted, options.outputs.depth);
   }
   if (projections.empty()) return;
   std::vector<Layer> in_place;

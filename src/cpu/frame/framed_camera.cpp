@@ -147,18 +147,19 @@ Scene draft_scene(const Scene& scene) {
   return draft;
 }
 
-Camera framed_camera(const Scene& scene, const Camera& start, const RenderOptions& options) {
+Camera framed_camera(const Scene& scene, const Camera& start, const Machine& machine,
+                     const FrameMonitor& monitor) {
   Scene draft = draft_scene(scene);
   RenderOptions plain;
-  plain.threads = options.threads;
-  plain.progress = options.progress;
-  plain.stop = options.stop;
-  plain.depth = true;
-  Renderer renderer(options.threads);
+  plain.machine = machine;
+  plain.monitor.progress = monitor.progress;
+  plain.monitor.stop = monitor.stop;
+  plain.outputs.depth = true;
+  Renderer renderer(machine.threads);
   return framed_camera(start, scene.size, [&](const Camera& camera, ImageSize size) {
     draft.camera = camera;
     draft.size = size;
-    return renderer.render(draft, plain);
+    return renderer.render(draft, plain).image;
   });
 }
 

@@ -7,14 +7,6 @@
 
 namespace pellucid {
 
-ImageView::ImageView(Image& image)
-    : width(static_cast<std::size_t>(image.width)),
-      pixels(image.pixels.data()),
-      depth(image.depth.empty() ? nullptr : image.depth.data()),
-      error(image.error.empty() ? nullptr : image.error.data()),
-      proved(image.error.empty() ? nullptr : image.proved.data()),
-      values(image.values.empty() ? nullptr : image.values.data()) {}
-
 void store_pixel(const Frame& frame, const RayResult& result, std::size_t pixel,
                  const ImageView& image, RenderReport& report) {
   const StoredPixel stored = stored_pixel(

@@ -5,8 +5,11 @@
 
 namespace pellucid {
 
-Progress::Progress(const RenderOptions& options, const Image& image, const std::vector<Tile>& tiles)
-    : options_(options), image_(image), levels_(static_cast<std::size_t>(options.preview) + 1) {
+Progress::Progress(const RenderOptions& options, const ImageView& image,
+                   const std::vector<Tile>& tiles)
+    : options_(options),
+      image_(image),
+      levels_(static_cast<std::size_t>(options.monitor.preview) + 1) {
   for (const Tile& tile : tiles) {
     total_ += pixel_count(tile);
     ++levels_[static_cast<std::size_t>(tile.level)].tiles;
@@ -19,7 +22,7 @@ void Progress::finish_pixels(std::size_t count) {
 }
 
 void Progress::finish_tile(const Tile& tile, std::size_t count) {
-  if (options_.tile) {
+  if (options_.monitor.tile) {
     const std::lock_guard lock(finishing_);
     levels_[static_cast<std::size_t>(tile.level)].finished.push_back(tile);
   }
@@ -54,9 +57,9 @@ void Progress::tell() {
 }
 
 void Progress::tell_share(std::uint64_t done) {
-  if (cancelled_ || !options_.progress || done <= told_pixels_) return;
+  if (cancelled_ || !options_.monitor.progress || done <= told_pixels_) return;
   told_pixels_ = done;
-  if (!options_.progress(static_cast<double>(done) / static_cast<double>(total_))) {
+  if (!options_.monitor.progress(static_cast<double>(done) / static_cast<double>(total_))) {
     cancelled_ = true;
   }
 }
@@ -64,7 +67,7 @@ void Progress::tell_share(std::uint64_t done) {
 void Progress::tell_tiles() {
   Tile tile;
   while (!cancelled_ && next_tile(tile)) {
-    if (!options_.tile({tile, image_})) cancelled_ = true;
+    if (!options_.monitor.tile({tile, image_})) cancelled_ = true;
   }
 }
 

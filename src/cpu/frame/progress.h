@@ -16,7 +16,7 @@ namespace pellucid {
 class Progress {
  public:
   /// All must outlive this. `tiles` are those of the frame.
-  Progress(const RenderOptions& options, const Image& image, const std::vector<Tile>& tiles);
+  Progress(const RenderOptions& options, const ImageView& image, const std::vector<Tile>& tiles);
 
   /// So many pixels more are final, of which no tile is to be told yet. Any thread.
   void finish_pixels(std::size_t count);
@@ -41,7 +41,7 @@ class Progress {
   bool next_tile(Tile& tile);
 
   const RenderOptions& options_;
-  const Image& image_;
+  const ImageView& image_;
   std::uint64_t total_ = 0;  ///< pixels
   std::atomic<std::uint64_t> done_{0};
   std::atomic<std::uint64_t> finished_{0};  ///< calls that finished something

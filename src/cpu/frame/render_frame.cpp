@@ -32,34 +32,24 @@ void check_region(const Scene& scene) {
   }
 }
 
-void check(const Scene& scene, const RenderOptions& options) {
+}  // namespace
+
+void check_frame(const Scene& scene, const RenderOptions& options) {
   check_data(scene);
   check_integration(scene);
   check_method(scene);
-  if (options.values) check_values(scene);
-  if (options.region) check_region(scene);
-  if (options.threads < 0) throw Error("threads: must not be negative; 0 takes one per core");
-  if (options.preview < 0 || options.preview > largest_preview) {
-    throw Error("preview: " + std::to_string(options.preview) + " levels, but must be from 0 to " +
-                std::to_string(largest_preview));
+  if (options.outputs.values) check_values(scene);
+  if (options.outputs.region) check_region(scene);
+  if (options.machine.threads < 0)
+    throw Error("threads: must not be negative; 0 takes one per core");
+  if (options.monitor.preview < 0 || options.monitor.preview > largest_preview) {
+    throw Error("preview: " + std::to_string(options.monitor.preview) +
+                " levels, but must be from 0 to " + std::to_string(largest_preview));
   }
+  make_camera_frame(scene.camera, scene.size);
 }
 
-Image make_image(ImageSize size, const RenderOptions& options) {
-  Image image;
-  image.width = size.width;
-  image.height = size.height;
-  const std::size_t pixels =
-      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-  image.pixels.resize(pixels);
-  if (options.depth) image.depth.resize(pixels);
-  if (options.values) image.values.resize(pixels);
-  if (options.error) {
-    image.error.resize(pixels);
-    image.proved.resize(pixels);
-  }
-  return image;
-}
+namespace {
 
 /// Returns the tiles from the `first` on, in their order from coarse to fine, whose pixels are
 /// multiples of `stride`.
@@ -69,20 +59,19 @@ std::span<const Tile> tiles_of(const std::vector<Tile>& tiles, std::size_t first
   return std::span(tiles).subspan(first, end - first);
 }
 
-void render_tiles(const Frame& frame, const RenderOptions& options, Image& image,
+void render_tiles(const Frame& frame, const RenderOptions& options, const ImageView& image,
                   RenderReport& report) {
-  const std::vector<Tile> tiles = make_tiles(frame.scene.size, options.preview);
-  const ImageView view(image);
+  const std::vector<Tile> tiles = make_tiles(frame.scene.size, options.monitor.preview);
   std::mutex report_mutex;
   Progress progress(options, image, tiles);
   TileSpeed speed;
-  const std::unique_ptr<BetweenPixels> between = BetweenPixels::make(frame, view);
+  const std::unique_ptr<BetweenPixels> between = BetweenPixels::make(frame, image);
   const auto render_level = [&](std::span<const Tile> some, int level, const auto& finish) {
     take_in_turn(some.size(), report.threads, [&](std::size_t i) {
       RenderReport part;
-      const std::size_t pixels =
-          render_tile(frame, some[i], {level, between.get(), options.stop, &speed}, view, part);
-      if (options.stop.stop_requested()) return false;
+      const std::size_t pixels = render_tile(
+          frame, some[i], {level, between.get(), options.monitor.stop, &speed}, image, part);
+      if (options.monitor.stop.stop_requested()) return false;
       {
         const std::lock_guard lock(report_mutex);
         add(report, part);
@@ -90,7 +79,7 @@ void render_tiles(const Frame& frame, const RenderOptions& options, Image& image
       finish(some[i], pixels);
       return !progress.cancelled();
     });
-    if (options.stop.stop_requested() || progress.cancelled()) throw Cancelled();
+    if (options.monitor.stop.stop_requested() || progress.cancelled()) throw Cancelled();
   };
   const auto finish_tile = [&](const Tile& tile, std::size_t pixels) {
     progress.finish_tile(tile, pixels);
@@ -99,7 +88,7 @@ void render_tiles(const Frame& frame, const RenderOptions& options, Image& image
   if (between) {
     for (int level = between->stride(); level > 1 && between->goes_on(); level /= 2) {
       const std::span<const Tile> of_preview = tiles_of(tiles, told, level);
-      if (1 << options.preview >= level) {
+      if (1 << options.monitor.preview >= level) {
         render_level(of_preview, level, finish_tile);
         told += of_preview.size();
       } else {
@@ -121,9 +110,24 @@ std::string_view device_name(Device device) noexcept {
   return device == Device::cpu ? "cpu" : "emulated";
 }
 
-Image render_frame(const Scene& scene, const RenderOptions& options, int threads, LayerSetups& kept,
-                   KeptDevices& devices, RenderReport* report) {
-  check(scene, options);
+Image make_image(ImageSize size, const FrameOutputs& outputs) {
+  Image image;
+  image.width = size.width;
+  image.height = size.height;
+  const std::size_t pixels =
+      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  image.pixels.resize(pixels);
+  if (outputs.depth) image.depth.resize(pixels);
+  if (outputs.values) image.values.resize(pixels);
+  if (outputs.error) {
+    image.error.resize(pixels);
+    image.proved.resize(pixels);
+  }
+  return image;
+}
+
+RenderReport render_frame(const ImageView& image, const Scene& scene, const RenderOptions& options,
+                          int threads, LayerSetups& kept, KeptDevices& devices) {
   RenderReport local;
   local.threads = threads;
   const auto start = std::chrono::steady_clock::now();
@@ -131,10 +135,9 @@ Image render_frame(const Scene& scene, const RenderOptions& options, int threads
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
   const std::shared_ptr<KeptDevice> device =
-      options.device == Device::cpu ? nullptr : devices.find(options.device);
+      options.machine.device == Device::cpu ? nullptr : devices.find(options.machine.device);
   const Frame frame(scene, options, threads, kept);
-  Image image = make_image(scene.size, options);
-  local.pixels = image.pixels.size();
+  local.pixels = static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
   local.setup_seconds = seconds();
   local.sampled_in_float = scene.integration.method != Method::exact && frame.only_layer &&
                            frame.only_layer->fast() != nullptr;
@@ -146,8 +149,7 @@ Image render_frame(const Scene& scene, const RenderOptions& options, int threads
     if (device) local.device = "rendered by the CPU: devices cannot do " + reason + " yet";
   }
   local.seconds = seconds();
-  if (report != nullptr) *report = local;
-  return image;
+  return local;
 }
 
 }  // namespace pellucid

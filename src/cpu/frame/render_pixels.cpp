@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "frame.h"
@@ -13,12 +14,13 @@
 
 namespace pellucid {
 
-Image render_pixels(const Scene& scene, const RenderOptions& options,
-                    const std::vector<PixelRequest>& requests, int threads, LayerSetups& kept,
-                    RenderReport* report) {
+RenderResult render_pixels(const Scene& scene, const RenderOptions& options,
+                           const std::vector<PixelRequest>& requests, int threads,
+                           LayerSetups& kept) {
   check_data(scene);
   check_integration(scene);
-  if (!options.region) throw Error("pixels: none is rendered again without a region; give one");
+  if (!options.outputs.region)
+    throw Error("pixels: none is rendered again without a region; give one");
   const Frame frame(scene, options, threads, kept);
   Image image;
   image.width = static_cast<int>(requests.size());
@@ -45,8 +47,8 @@ Image render_pixels(const Scene& scene, const RenderOptions& options,
     }
     const std::vector<RayResult> found =
         trace_region(frame, rays, [&](std::size_t i) { return requests[first + i].allowance; }, 1,
-                     {1, nullptr, options.stop, &speed});
-    if (options.stop.stop_requested()) return false;
+                     {1, nullptr, options.monitor.stop, &speed});
+    if (options.monitor.stop.stop_requested()) return false;
     const std::lock_guard lock(mutex);
     all.rays += rays.size();
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -54,14 +56,13 @@ Image render_pixels(const Scene& scene, const RenderOptions& options,
       add_work(all, found[i]);
     }
     done += found.size();
-    if (!options.progress) return true;
+    if (!options.monitor.progress) return true;
     const double fraction = static_cast<double>(done) / static_cast<double>(requests.size());
-    if (!options.progress(fraction)) cancelled = true;
+    if (!options.monitor.progress(fraction)) cancelled = true;
     return !cancelled.load();
   });
-  if (options.stop.stop_requested() || cancelled) throw Cancelled();
-  if (report != nullptr) *report = all;
-  return image;
+  if (options.monitor.stop.stop_requested() || cancelled) throw Cancelled();
+  return {std::move(image), all};
 }
 
 }  // namespace pellucid

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <exception>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -17,6 +18,23 @@
 
 namespace pellucid {
 
+namespace {
+
+/// Throws Error unless the memory has the size of a picture and what its outputs need.
+void check_target(const ImageView& target, ImageSize size) {
+  if (target.width != size.width || target.height != size.height) {
+    throw Error("target: has " + std::to_string(target.width) + " x " +
+                std::to_string(target.height) + " pixels, but the scene's picture " +
+                std::to_string(size.width) + " x " + std::to_string(size.height));
+  }
+  if (target.pixels == nullptr) throw Error("target: has no memory for the color");
+  if ((target.error == nullptr) != (target.proved == nullptr)) {
+    throw Error("target: has memory for only one of error and proved; give both or none");
+  }
+}
+
+}  // namespace
+
 class KeptFrames {
  public:
   explicit KeptFrames(int of_frames) : threads(of_frames) {
@@ -27,11 +45,26 @@ class KeptFrames {
   LayerSetups setups;
   KeptDevices devices;
 
-  Image render(const Scene& scene, const RenderOptions& options, RenderReport* report) {
-    return render_frame(scene, options, count_for(options), setups, devices, report);
+  RenderResult render(const Scene& scene, const RenderOptions& options) {
+    check_frame(scene, options);
+    RenderResult result;
+    result.image = make_image(scene.size, options.outputs);
+    result.report =
+        render_frame(ImageView(result.image), scene, options, count_for(options), setups, devices);
+    return result;
+  }
+  RenderReport render_into(const ImageView& target, const Scene& scene,
+                           const RenderOptions& options) {
+    RenderOptions wanted = options;
+    wanted.outputs.depth = target.depth != nullptr;
+    wanted.outputs.error = target.error != nullptr;
+    wanted.outputs.values = target.values != nullptr;
+    check_frame(scene, wanted);
+    check_target(target, scene.size);
+    return render_frame(target, scene, wanted, count_for(options), setups, devices);
   }
   int count_for(const RenderOptions& options) const {
-    const int count = options.threads > 0 ? options.threads : threads;
+    const int count = options.machine.threads > 0 ? options.machine.threads : threads;
     return count > 0 ? count : default_thread_count();
   }
 };
@@ -41,14 +74,19 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
 
-Image Renderer::render(const Scene& scene, const RenderOptions& options, RenderReport* report) {
-  return kept_->render(scene, options, report);
+RenderResult Renderer::render(const Scene& scene, const RenderOptions& options) {
+  return kept_->render(scene, options);
 }
 
-Image Renderer::render_pixels(const Scene& scene, const RenderOptions& options,
-                              const std::vector<PixelRequest>& requests, RenderReport* report) {
-  return pellucid::render_pixels(scene, options, requests, kept_->count_for(options), kept_->setups,
-                                 report);
+RenderReport Renderer::render_into(const ImageView& target, const Scene& scene,
+                                   const RenderOptions& options) {
+  return kept_->render_into(target, scene, options);
+}
+
+RenderResult Renderer::render_pixels(const Scene& scene, const RenderOptions& options,
+                                     const std::vector<PixelRequest>& requests) {
+  return pellucid::render_pixels(scene, options, requests, kept_->count_for(options),
+                                 kept_->setups);
 }
 
 void Renderer::clear() {
@@ -62,13 +100,13 @@ struct RunningFrame::Job {
       : kept(std::move(with)),
         scene(std::move(of)),
         options(std::move(how)),
-        outside(options.stop, [this] { stop.request_stop(); }) {
-    options.stop = stop.get_token();
-    report_progress = std::exchange(options.progress, [this](double done) {
+        outside(options.monitor.stop, [this] { stop.request_stop(); }) {
+    options.monitor.stop = stop.get_token();
+    report_progress = std::exchange(options.monitor.progress, [this](double done) {
       fraction.store(done, std::memory_order_relaxed);
       return !report_progress || report_progress(done);
     });
-    report_tile = std::exchange(options.tile, [this](const TileResult& tile) {
+    report_tile = std::exchange(options.monitor.tile, [this](const TileResult& tile) {
       show(tile);
       return !report_tile || report_tile(tile);
     });
@@ -83,7 +121,7 @@ struct RunningFrame::Job {
 
   void run() {
     try {
-      image = kept->render(scene, options, &report);
+      frame = kept->render(scene, options);
       const std::lock_guard lock(showing);
       level = 0;
       shown.width = 0;  // the image itself is shown from here on
@@ -102,8 +140,9 @@ struct RunningFrame::Job {
     if (shown.width == 0) {
       shown.width = whole.width;
       shown.height = whole.height;
-      shown.pixels.resize(whole.pixels.size());
-      level = options.preview + 1;
+      shown.pixels.resize(static_cast<std::size_t>(whole.width) *
+                          static_cast<std::size_t>(whole.height));
+      level = options.monitor.preview + 1;
     }
     // Tiles of a level follow all tiles of the coarser one.
     if (tile.level < level) level = tile.level + 1;
@@ -130,8 +169,7 @@ struct RunningFrame::Job {
   std::stop_callback<std::function<void()>> outside;
   std::atomic<double> fraction{0};
   std::atomic<bool> finished{false};
-  Image image;
-  RenderReport report;
+  RenderResult frame;
   std::exception_ptr error;
   mutable std::mutex showing;
   Image shown;     ///< of no width: nothing is shown yet, or the image is
@@ -157,7 +195,7 @@ RunningFrame::State RunningFrame::state() const {
   state.finished = finished();
   state.fraction = job_->fraction;
   const std::lock_guard lock(job_->showing);
-  state.level = job_->level > job_->options.preview ? -1 : job_->level;
+  state.level = job_->level > job_->options.monitor.preview ? -1 : job_->level;
   return state;
 }
 
@@ -165,9 +203,10 @@ Image RunningFrame::look() const {
   const std::lock_guard lock(job_->showing);
   if (job_->level == 0) {
     Image copy;
-    copy.width = job_->image.width;
-    copy.height = job_->image.height;
-    copy.pixels = job_->image.pixels;
+    const Image& image = job_->frame.image;
+    copy.width = image.width;
+    copy.height = image.height;
+    copy.pixels = image.pixels;
     return copy;
   }
   if (job_->shown.width > 0) return job_->shown;
@@ -179,12 +218,11 @@ Image RunningFrame::look() const {
   return nothing;
 }
 
-Image RunningFrame::wait(RenderReport* report) {
+RenderResult RunningFrame::wait() {
   if (job_->thread.joinable()) job_->thread.join();
   if (job_->error) std::rethrow_exception(job_->error);
-  if (report != nullptr) *report = job_->report;
   const std::lock_guard lock(job_->showing);
-  return std::exchange(job_->image, {});
+  return {std::exchange(job_->frame.image, {}), job_->frame.report};
 }
 
 RunningFrame Renderer::start(Scene scene, RenderOptions options) {
@@ -192,8 +230,13 @@ RunningFrame Renderer::start(Scene scene, RenderOptions options) {
       std::make_unique<RunningFrame::Job>(kept_, std::move(scene), std::move(options)));
 }
 
-Image render(const Scene& scene, const RenderOptions& options, RenderReport* report) {
-  return Renderer().render(scene, options, report);
+RenderResult render(const Scene& scene, const RenderOptions& options) {
+  return Renderer().render(scene, options);
+}
+
+RenderReport render_into(const ImageView& target, const Scene& scene,
+                         const RenderOptions& options) {
+  return Renderer().render_into(target, scene, options);
 }
 
 }  // namespace pellucid

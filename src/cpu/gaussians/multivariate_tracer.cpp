@@ -27,17 +27,18 @@ class MultivariateTracer : public RayTracer {
       : channels_(*std::get<ChannelsContent>(task.layer.content).channels),
         transfer_function_(*std::get<ChannelsContent>(task.layer.content).transfer_function),
         wanted_(task.wanted),
-        depth_(task.options.depth),
+        depth_(task.options.outputs.depth),
         grid_(multichannel_grid(channels_)),
         transfer_(transfer_function_.view()) {
     storage_ = MultivariateBlocksStorage(channels_, transfer_function_, negligible_extinction(task),
                                          parallel_for(task.threads));
     blocks_ = storage_.view();
     wanted_.tolerance *= 1 - ray_left_out_share;
-    const InstructionSet set = packet_instruction_set(task.options.instruction_set);
+    const InstructionSet set = packet_instruction_set(task.options.machine.instruction_set);
     if (set == InstructionSet::scalar || task.integration.precision != Precision::automatic) return;
     cells_ = CellPackets::make(channels_, transfer_function_, *blocks_, grid_, wanted_, set);
-    if (!cells_ || task.options.gaussian_march.value_or(faster_march()) == GaussianMarch::steps) {
+    if (!cells_ ||
+        task.options.machine.gaussian_march.value_or(faster_march()) == GaussianMarch::steps) {
       steps_ = GaussianPackets::make(channels_, transfer_function_, *blocks_, grid_, wanted_,
                                      negligible_extinction(task), set, parallel_for(task.threads));
     }

@@ -20,7 +20,7 @@ namespace {
 using Kernel = void (*)(const PellucidPacketJob*);
 
 Kernel kernel_for(const TracerTask& task) {
-  return PELLUCID_KERNEL_OF(packet_instruction_set(task.options.instruction_set),
+  return PELLUCID_KERNEL_OF(packet_instruction_set(task.options.machine.instruction_set),
                             pellucid_meet_surfaces);
 }
 
@@ -55,7 +55,7 @@ class SurfaceTracer : public RayTracer {
     job_.transfer = &binned_.view();
     job_.tolerance = task.wanted.tolerance;
     job_.largest_color = largest_color;
-    job_.depth = task.options.depth ? 1 : 0;
+    job_.depth = task.options.outputs.depth ? 1 : 0;
   }
 
   bool keeps_to_ranges() const override { return true; }

@@ -55,7 +55,7 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
     : volume_(*std::get<VolumeContent>(task.layer.content).volume),
       transfer_function_(*std::get<VolumeContent>(task.layer.content).transfer_function),
       wanted_(task.wanted),
-      depth_(task.options.depth),
+      depth_(task.options.outputs.depth),
       with_surfaces_(has_plain_isosurfaces(task.layer) ? with_points_at_isosurfaces(task.layer)
                                                        : std::nullopt),
       transfer_(with_surfaces_ ? *with_surfaces_ : transfer_function_) {
@@ -75,9 +75,9 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
   block_classes_ =
       BlockClassesStorage(records, transfer_.tables(), wanted_.largest_color, parallel, limits);
   blocks_ = ClassifiedBlocks{records, block_classes_.view()};
-  packets_ =
-      PacketTracer::make(volume_, *blocks_, light_ ? SmoothBlocks{} : block_classes_.smooth(),
-                         transfer_.tables(), wanted_, task.options.instruction_set, light_.get());
+  packets_ = PacketTracer::make(
+      volume_, *blocks_, light_ ? SmoothBlocks{} : block_classes_.smooth(), transfer_.tables(),
+      wanted_, task.options.machine.instruction_set, light_.get());
 }
 
 std::optional<RayTracer::Surroundings> UnivariateTracer::surroundings() const {

@@ -37,9 +37,9 @@ LayerSetting::LayerSetting(const Integration& of_scene, const RayTolerance& of_r
       lights(of_lights),
       wanted(of_rays),
       negligible_extinction(negligible),
-      depth(options.depth),
-      instruction_set(options.instruction_set),
-      gaussian_march(options.gaussian_march) {}
+      depth(options.outputs.depth),
+      instruction_set(options.machine.instruction_set),
+      gaussian_march(options.machine.gaussian_march) {}
 
 LayerSetup::LayerSetup(const Layer& layer, const LayerSetting& setting, int threads)
     : content_(layer.content),
@@ -48,9 +48,9 @@ LayerSetup::LayerSetup(const Layer& layer, const LayerSetting& setting, int thre
       layer_(moved_into_place(layer)),
       largest_extinction_(pellucid::largest_extinction(layer_)) {
   RenderOptions options;
-  options.depth = setting_.depth;
-  options.instruction_set = setting_.instruction_set;
-  options.gaussian_march = setting_.gaussian_march;
+  options.outputs.depth = setting_.depth;
+  options.machine.instruction_set = setting_.instruction_set;
+  options.machine.gaussian_march = setting_.gaussian_march;
   fast_ = make_fast_tracer(
       {layer_, setting_.integration, options, setting_.lights, setting_.wanted, threads}, setting_);
   if (!fast_) make_source(parallel_for(threads));

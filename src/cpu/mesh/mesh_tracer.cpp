@@ -47,7 +47,7 @@ class MeshTracer : public RayTracer {
       : mesh_(mesh_of(task).mesh().view()),
         fields_(mesh_of(task)),
         wanted_(task.wanted),
-        depth_(task.options.depth) {}
+        depth_(task.options.outputs.depth) {}
 
   /// Single rays are followed from end to end.
   bool keeps_to_ranges() const override { return kernel_ != nullptr; }
@@ -70,7 +70,7 @@ class MeshTracer : public RayTracer {
 
   /// Sets up packets, where the mesh and what is wanted suit them.
   void prepare(const TracerTask& task, double largest_extinction, bool several) {
-    const InstructionSet set = packet_instruction_set(task.options.instruction_set);
+    const InstructionSet set = packet_instruction_set(task.options.machine.instruction_set);
     const MeshChannels& channels = mesh_of(task);
     if (wanted_.precision != Precision::automatic || wanted_.tolerance < least_packet_tolerance ||
         !is_moderate(channels.mesh().statistics().mean_edge) || largest_extinction > 1e12) {

@@ -102,10 +102,11 @@ ProjectedRays project_layer(const Scene& scene, std::size_t index, const RenderO
   // Means of parts are joined by their sums.
   if (projection == LayerProjection::mean) layer.projection = LayerProjection::sum;
   std::vector<Clip> clips = clips_of(layer, scene.clips);
-  if (options.region) {
-    for (Clip& clip : clips_of_region(*options.region)) clips.push_back(std::move(clip));
+  if (options.outputs.region) {
+    for (Clip& clip : clips_of_region(*options.outputs.region)) clips.push_back(std::move(clip));
   }
-  const int threads = options.threads > 0 ? options.threads : default_thread_count();
+  const int threads =
+      options.machine.threads > 0 ? options.machine.threads : default_thread_count();
   const auto projector = make_layer_projector({layer, std::move(clips), parallel_for(threads)});
   const CameraFrame<double> camera = make_camera_frame(scene.camera, scene.size);
   const auto width = static_cast<std::size_t>(camera.width);
@@ -124,12 +125,12 @@ ProjectedRays project_layer(const Scene& scene, std::size_t index, const RenderO
     }
     const std::lock_guard lock(progress_mutex);
     ++done;
-    if (options.progress && !cancelled) {
-      cancelled = !options.progress(static_cast<double>(done) / static_cast<double>(rows));
+    if (options.monitor.progress && !cancelled) {
+      cancelled = !options.monitor.progress(static_cast<double>(done) / static_cast<double>(rows));
     }
-    return !cancelled && !options.stop.stop_requested();
+    return !cancelled && !options.monitor.stop.stop_requested();
   });
-  if (cancelled || options.stop.stop_requested()) throw Cancelled();
+  if (cancelled || options.monitor.stop.stop_requested()) throw Cancelled();
   return rays;
 }
 

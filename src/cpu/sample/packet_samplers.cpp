@@ -44,7 +44,7 @@ class UnivariateSampler : public RayTracer {
     packets_ = PacketSamplerTracer::make(
         volume_, classes_.view(), transfer_.tables().single,
         preintegrated_ ? &preintegrated_->view() : nullptr, light_ ? &light_->view() : nullptr,
-        step, stop_for(task.wanted.largest_color), task.options.instruction_set);
+        step, stop_for(task.wanted.largest_color), task.options.machine.instruction_set);
   }
 
   bool has_packets() const { return packets_ != nullptr; }
@@ -70,7 +70,7 @@ class MultivariateSamplerTracer : public RayTracer {
         packets_(MultivariatePacketSampler::make(
             channels_, *std::get<ChannelsContent>(task.layer.content).transfer_function,
             task.integration.step * channels_.grid().voxel_size(),
-            stop_for(task.wanted.largest_color), task.options.instruction_set,
+            stop_for(task.wanted.largest_color), task.options.machine.instruction_set,
             parallel_for(task.threads))) {}
 
   bool has_packets() const { return packets_ != nullptr; }
@@ -95,7 +95,7 @@ std::unique_ptr<const RayTracer> made(const TracerTask& task) {
 
 std::unique_ptr<const RayTracer> make_packet_sampler(const TracerTask& task) {
   const Method method = task.integration.method;
-  if (task.options.depth || task.integration.precision == Precision::float64 ||
+  if (task.options.outputs.depth || task.integration.precision == Precision::float64 ||
       has_surfaces(task.layer) || extinction_factor_of(task.layer) != nullptr) {
     return nullptr;
   }

@@ -58,15 +58,10 @@ const SignalTable& signal_table() {
   return table;
 }
 
-}  // namespace
-
-std::vector<std::uint8_t> display_bytes(const Image& image, const Background& background,
-                                        DisplayLayout layout) {
-  return display_bytes(image, background, layout, 1);
-}
-
-std::vector<std::uint8_t> display_bytes(const Image& image, const Background& background,
-                                        DisplayLayout layout, int stride) {
+/// Returns the bytes of an Image or an ImageView.
+template <class Picture>
+std::vector<std::uint8_t> bytes_of(const Picture& image, const Background& background,
+                                   DisplayLayout layout, int stride) {
   const SignalTable& signal = signal_table();
   const std::size_t channels = layout == DisplayLayout::rgba ? 4 : 3;
   const auto count = [stride](int size) {
@@ -85,6 +80,18 @@ std::vector<std::uint8_t> display_bytes(const Image& image, const Background& ba
     }
   }
   return bytes;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> display_bytes(const Image& image, const Background& background,
+                                        DisplayLayout layout) {
+  return bytes_of(image, background, layout, 1);
+}
+
+std::vector<std::uint8_t> display_bytes(const ImageView& image, const Background& background,
+                                        DisplayLayout layout, int stride) {
+  return bytes_of(image, background, layout, stride);
 }
 
 std::vector<std::uint8_t> transparent_display_bytes(const Image& image) {

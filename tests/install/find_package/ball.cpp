@@ -85,12 +85,8 @@ int main() {
             {0.2, 0, {0.2, 0.4, 1}}, {0.6, 2, {1, 0.6, 0.2}}, {1, 0.5, {1, 1, 0.8}}});
     pellucid::Layer layer{pellucid::SourceContent{std::make_shared<const Ball>(), function}};
     layer.shading = pellucid::Shading{};
-    pellucid::Scene scene;
-    scene.layers = {layer};
-    scene.size = {96, 96};
-    scene.camera = pellucid::default_camera(world_corners(scene), scene.size);
-    pellucid::RenderReport report;
-    const pellucid::Image image = pellucid::render(scene, {}, &report);
+    const pellucid::Scene scene(layer, {96, 96});
+    const auto [image, report] = pellucid::render(scene);
     std::printf("the middle pixel has the opacity %.3f\n", double{image.at(48, 48)[3]});
     std::printf("largest error %.2g of %.2g\n", report.largest_error, scene.integration.tolerance);
     pellucid::write_png(image, "ball.png");

@@ -1,25 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <pellucid/cpu/render.h>
-#include <pellucid/io/image_files.h>
-#include <pellucid/io/read_volume.h>
+#include <pellucid/pellucid.h>
 #include <pellucid/scene/builtin_fields.h>
-#include <pellucid/scene/defaults.h>
 #include <pellucid/scene/error.h>
 
 #include <cstdio>
-#include <memory>
-#include <utility>
 
 // A scene with nothing left to choose: the transfer function and the camera follow from the data.
-pellucid::Scene scene_of(pellucid::Volume volume) {
-  pellucid::Scene scene;
-  const auto data = std::make_shared<pellucid::Volume>(std::move(volume));
-  const auto function =
-      std::make_shared<pellucid::TransferFunction>(pellucid::default_transfer_function(*data));
-  scene.layers = {{pellucid::VolumeContent{data, function}}};
-  scene.size = {96, 72};
-  scene.camera = pellucid::default_camera(*data, scene.size);
-  scene.integration.set_tolerance(1e-3);
+pellucid::Scene scene_of(const pellucid::Volume& data) {
+  const pellucid::Layer layer(data, pellucid::default_transfer_function(data));
+  pellucid::Scene scene(layer, {96, 72});
+  scene.integration.tolerance = 1e-3;
   return scene;
 }
 
@@ -29,14 +19,13 @@ int main(int argc, char** argv) {
                                                     : pellucid::make_builtin_field("shells", 24));
 
     pellucid::RenderOptions options;
-    options.error = true;  // fill Image::error
-    options.preview = 3;   // every eighth pixel along each axis first
-    options.tile = [](const pellucid::TileResult& done) {
+    options.outputs.error = true;  // fill Image::error
+    options.monitor.preview = 3;   // every eighth pixel along each axis first
+    options.monitor.tile = [](const pellucid::TileResult& done) {
       std::printf("level %d: %d x %d pixels\n", done.tile.level, done.tile.columns, done.tile.rows);
       return true;  // false cancels
     };
-    pellucid::RenderReport report;
-    const pellucid::Image image = pellucid::render(scene, options, &report);
+    const auto [image, report] = pellucid::render(scene, options);
 
     std::printf("largest error %g, tolerance %g\n", report.largest_error,
                 scene.integration.tolerance);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <pellucid/cpu/renderer.h>
-#include <pellucid/io/read_volume.h>
+#include <pellucid/pellucid.h>
 #include <pellucid/scene/builtin_fields.h>
-#include <pellucid/scene/defaults.h>
 #include <pellucid/scene/error.h>
 
 #include <algorithm>
@@ -10,7 +8,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
 #include <thread>
 
 using Clock = std::chrono::steady_clock;
@@ -31,22 +28,17 @@ void orbit(pellucid::Camera& camera, double degrees) {
 // turn [FILE [SECONDS [PIXELS]]]
 int main(int argc, char** argv) {
   try {
-    const auto data = std::make_shared<pellucid::Volume>(
-        argc > 1 ? pellucid::read_volume(argv[1]) : pellucid::make_builtin_field("shells", 64));
+    const pellucid::Volume data =
+        argc > 1 ? pellucid::read_volume(argv[1]) : pellucid::make_builtin_field("shells", 64);
     const double seconds = argc > 2 ? std::atof(argv[2]) : 5;
     const int pixels = argc > 3 ? std::atoi(argv[3]) : 512;
-    pellucid::Scene scene;
-    scene.layers = {{pellucid::VolumeContent{
-        data,
-        std::make_shared<pellucid::TransferFunction>(pellucid::default_transfer_function(*data))}}};
-    scene.size = {pixels, pixels};
-    scene.camera = pellucid::default_camera(*data, scene.size);
+    const pellucid::Layer layer(data, pellucid::default_transfer_function(data));
+    pellucid::Scene scene(layer, {pixels, pixels});
 
     pellucid::Renderer renderer;  // keeps what frames share
     pellucid::RenderOptions options;
-    options.preview = 3;  // every eighth pixel along each axis first
-    pellucid::RenderReport report;
-    renderer.render(scene, options, &report);
+    options.monitor.preview = 3;  // every eighth pixel along each axis first
+    pellucid::RenderReport report = renderer.render(scene, options).report;
     std::printf("first frame: %.0f ms, of these set-up %.2f ms\n", 1e3 * report.seconds,
                 1e3 * report.setup_seconds);
 
@@ -56,7 +48,7 @@ int main(int argc, char** argv) {
     const auto begin = Clock::now();
     while (milliseconds_since(begin) < 500 * seconds) {
       orbit(scene.camera, 3);
-      renderer.render(scene, options, &report);
+      report = renderer.render(scene, options).report;
       setup = std::max(setup, report.setup_seconds);
       ++frames;
     }
