@@ -18,7 +18,7 @@ namespace pellucid::view {
 namespace {
 
 constexpr int deepest_nesting = 16;
-constexpr int most_members = 1024;
+constexpr int max_members = 1024;
 /// Drags across several pictures make no sense, nor do wheels that turn as fast.
 constexpr double farthest_drag = 10, largest_zoom = 100;
 
@@ -275,8 +275,8 @@ Json parse_json(std::string_view message) {
     }
     const auto level = static_cast<std::size_t>(depth);
     if (event == Event::object_start) members[level + 1] = 0;
-    if (event == Event::key && ++members[level] > most_members) {
-      throw Error(fmt::format("message: an object has more than {} members", most_members));
+    if (event == Event::key && ++members[level] > max_members) {
+      throw Error(fmt::format("message: an object has more than {} members", max_members));
     }
     return true;
   };

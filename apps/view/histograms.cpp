@@ -66,10 +66,10 @@ HistogramAxis trimmed(const JointHistogram& histogram, double total, double& bel
 
 /// Returns the axis from 0.1 to 99.9 % of the values. Far outliers take a look or two more.
 HistogramAxis middle_axis(const Channels& channels, int channel, const ParallelFor& parallel) {
-  constexpr int fine_bins = 4096, most_looks = 12;
+  constexpr int fine_bins = 4096, max_looks = 12;
   HistogramAxis axis = histogram_axis(*channels[channel].volume, fine_bins);
   double total = 0, below = 0;
-  for (int look = 0; look < most_looks; ++look) {
+  for (int look = 0; look < max_looks; ++look) {
     const JointHistogram histogram = joint_histogram(channels, {channel}, {axis}, parallel);
     if (look == 0) {
       for (const std::uint64_t count : histogram.count) total += static_cast<double>(count);

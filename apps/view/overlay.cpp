@@ -30,14 +30,14 @@ struct Shape {
 };
 
 /// Extent of the data: the middle and half of the diagonal of a box around them.
-struct Surroundings {
+struct InterpolationInfo {
   Vec3<double> middle{};
   double radius = 0;
 };
 
-Surroundings surroundings_of(const Scene& scene) {
+InterpolationInfo surroundings_of(const Scene& scene) {
   const std::array<Vec3<double>, 8> corners = world_corners(scene);
-  Surroundings result;
+  InterpolationInfo result;
   for (const Vec3<double>& corner : corners) result.middle = result.middle + corner * 0.125;
   for (const Vec3<double>& corner : corners) {
     result.radius = std::max(result.radius, length(corner - result.middle));
@@ -65,12 +65,12 @@ void add_circle(const Vec3<double>& middle, const Vec3<double>& normal, double r
 }
 
 /// Returns the point of the plane that is nearest to the middle of the data.
-Vec3<double> plane_middle(const ClipPlane& plane, const Surroundings& around) {
+Vec3<double> plane_middle(const ClipPlane& plane, const InterpolationInfo& around) {
   const Vec3<double> normal = normalized(plane.normal);
   return around.middle - normal * dot(around.middle - plane.point, normal);
 }
 
-Shape shape_of(const ClipPlane& plane, const Surroundings& around) {
+Shape shape_of(const ClipPlane& plane, const InterpolationInfo& around) {
   const Vec3<double> normal = normalized(plane.normal), middle = plane_middle(plane, around);
   const auto [right, up] = across(normal);
   const double size = 0.6 * around.radius;
@@ -84,7 +84,7 @@ Shape shape_of(const ClipPlane& plane, const Surroundings& around) {
   return shape;
 }
 
-Shape shape_of(const ClipBox& box, const Surroundings&) {
+Shape shape_of(const ClipBox& box, const InterpolationInfo&) {
   const auto corner = [&](int bits) {
     return Vec3<double>{(bits & 1) != 0 ? box.upper.x : box.lower.x,
                         (bits & 2) != 0 ? box.upper.y : box.lower.y,
@@ -106,7 +106,7 @@ Shape shape_of(const ClipBox& box, const Surroundings&) {
   return shape;
 }
 
-Shape shape_of(const ClipSphere& sphere, const Surroundings&) {
+Shape shape_of(const ClipSphere& sphere, const InterpolationInfo&) {
   Shape shape;
   for (const Vec3<double>& axis :
        {Vec3<double>{1, 0, 0}, Vec3<double>{0, 1, 0}, Vec3<double>{0, 0, 1}}) {
@@ -117,7 +117,7 @@ Shape shape_of(const ClipSphere& sphere, const Surroundings&) {
   return shape;
 }
 
-Shape shape_of(const ClipCylinder& cylinder, const Surroundings&) {
+Shape shape_of(const ClipCylinder& cylinder, const InterpolationInfo&) {
   const Vec3<double> axis = normalized(cylinder.end - cylinder.start);
   const Vec3<double> right = across(axis).first, middle = (cylinder.start + cylinder.end) * 0.5;
   Shape shape;
@@ -266,7 +266,7 @@ Json overlay_json(const Scene& scene, const Lettering& lettering) {
                     {"z", seen.z}});
   }
   Json clips = Json::array();
-  const Surroundings around = surroundings_of(scene);
+  const InterpolationInfo around = surroundings_of(scene);
   for (const Clip& clip : scene.clips) {
     clips.push_back(std::visit(
         [&](const auto& shape) { return shape_json(shape_of(shape, around), map); }, clip.shape));

@@ -24,9 +24,9 @@ namespace pellucid::view {
 namespace {
 
 /// A page that sends faster than commands are carried out, for minutes, is not ours.
-constexpr std::size_t most_waiting = 4096;
+constexpr std::size_t max_waiting = 4096;
 /// Size of waiting messages. Commands take some twenty times as much memory at worst.
-constexpr std::size_t most_waiting_bytes = std::size_t{16} << 20;
+constexpr std::size_t max_waiting_bytes = std::size_t{16} << 20;
 
 constexpr const char* defect = "; this is a defect of pellucid, please report it";
 
@@ -290,7 +290,7 @@ void Studio::receive(PageId page, Command command, std::size_t bytes, std::uint6
       asked_bytes_ -= asked_.back().bytes;
       asked_.pop_back();
     }
-    if (asked_.size() >= most_waiting || asked_bytes_ + bytes > most_waiting_bytes) {
+    if (asked_.size() >= max_waiting || asked_bytes_ + bytes > max_waiting_bytes) {
       return send_(page, error_message("too many commands wait; this one is left out"));
     }
     asked_bytes_ += bytes;

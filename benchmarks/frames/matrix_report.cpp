@@ -106,7 +106,7 @@ std::string tightness(const std::vector<MatrixRow>& rows, const std::string& sce
   std::vector<double> asked, reported;
   double share = INFINITY;
   for_each_cell(rows, scene, 0, grade, [&](const MatrixRow&, const MatrixCell& cell) {
-    share = std::min(share, cell.verdict.least_share);
+    share = std::min(share, cell.verdict.min_share);
     if (!(cell.verdict.found > 0)) return;
     asked.push_back(cell.tolerance / cell.verdict.found);
     reported.push_back(cell.verdict.reported / cell.verdict.found);
@@ -241,7 +241,7 @@ nlohmann::ordered_json cell_json(const MatrixCell& cell) {
           {"pixels_too_bright", v.too_bright},
           {"pixels_over_reported", v.over_reported},
           {"pixels_said_over", v.said_over},
-          {"least_reported_to_found", std::isfinite(v.least_share) ? v.least_share : -1},
+          {"least_reported_to_found", std::isfinite(v.min_share) ? v.min_share : -1},
           {"pixels_proved", cell.report.pixels_proved},
           {"rays", cell.report.rays},
           {"evaluations", cell.report.evaluations},

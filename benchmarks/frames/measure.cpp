@@ -39,7 +39,7 @@ std::size_t least_points(Knob knob) {
 
 /// How slow a sampler has to be, relative to exact at an equal error, to be left alone; and what a
 /// frame takes at most, in seconds.
-constexpr double slow_enough = 10, most_seconds = 30;
+constexpr double slow_enough = 10, max_seconds = 30;
 
 /// Whether it is not known yet how much slower than exact, whose curve this is, a sampler is at all
 /// of the errors that are compared.
@@ -61,7 +61,7 @@ Curve first_round(const Contender& contender, const ReferencePixels& reference,
       const bool goes_on =
           exact != nullptr && curve.knob == Knob::step && is_to_go_on(last, *exact);
       if (expected_seconds(last, curve.knob, setting) >
-          (goes_on ? std::max(most_seconds, longest_seconds) : longest_seconds)) {
+          (goes_on ? std::max(max_seconds, longest_seconds) : longest_seconds)) {
         curve.cut_short = true;
         break;
       }

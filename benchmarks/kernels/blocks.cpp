@@ -16,8 +16,8 @@
 #include "pellucid/traverse/block_walk.h"
 #include "pellucid/traverse/build_block_records.h"
 
-// Walks along rays through 256³ cells, the records of the blocks of a volume, and their classes
-// under a transfer function. One item is one cell, one block or one voxel.
+// BlockSegments along rays through 256³ cells, the records of the blocks of a volume, and their
+// classes under a transfer function. One item is one cell, one block or one voxel.
 namespace pellucid::bench {
 namespace {
 

@@ -55,7 +55,7 @@ TransferFunction averages(const LookRecipe& recipe) {
 }
 
 /// The largest number of chords of a product between two of its corners.
-constexpr double most_chords = 4096;
+constexpr double max_chords = 4096;
 
 /// Extinctions whose depth is VTK's sum: a chain of chords of the product of opacity and place. The
 /// product of two lines is off a chord by a quarter of the product of their changes, at most.
@@ -78,7 +78,7 @@ TransferFunction sums(const LookRecipe& recipe) {
     if (i > 0 && joint[i - 1].x < joint[i].x) {
       const JoinedPoint &from = joint[i - 1], &to = joint[i];
       const double change = std::abs((to.a - from.a) * (to.b.r - from.b.r)) / 4;
-      const double count = std::ceil(std::min(std::sqrt(change / wanted), most_chords));
+      const double count = std::ceil(std::min(std::sqrt(change / wanted), max_chords));
       for (int k = 1; k < count; ++k) {
         const double share = k / count, x = from.x + share * (to.x - from.x);
         if (!(points.back().value < x && x < to.x)) continue;

@@ -187,7 +187,7 @@ void set_final_colors(Finish& finish, double window, double level, Notes& notes)
 }
 
 void set_threads(Settings& settings, int threads) {
-  settings.threads = std::clamp(threads, 0, most_threads);
+  settings.threads = std::clamp(threads, 0, max_threads);
 }
 
 void print_state(std::ostream& out, vtkIndent indent, const MapperCore& core) {

@@ -33,13 +33,13 @@ class vtkWindow;
 
 namespace pellucid::plugin {
 
-inline constexpr int most_threads = 1024;
+inline constexpr int max_threads = 1024;
 
 /// Settings of a mapper that VTK's own do not have.
 struct Settings {
   double tolerance = default_tolerance;
   Grade grade = Grade::estimated;
-  int threads = 0;  ///< up to most_threads; 0: one per core
+  int threads = 0;  ///< up to max_threads; 0: one per core
 };
 
 /// Set a number, and return whether it is another one than before. The tolerance is brought into

@@ -81,7 +81,7 @@ bool vtkPellucidFactory::Set(vtkAbstractVolumeMapper* mapper, const char* name, 
     if (value != 0 && value != 1) return false;
     if (pellucid::plugin::set_grade(core->settings, static_cast<int>(value))) mapper->Modified();
   } else if (wanted == "NumberOfThreads") {
-    if (!(value >= 0 && value <= pellucid::plugin::most_threads)) return false;
+    if (!(value >= 0 && value <= pellucid::plugin::max_threads)) return false;
     pellucid::plugin::set_threads(core->settings, static_cast<int>(value));
   } else {
     return false;

@@ -18,7 +18,7 @@ constexpr double beside = between / 64;
 /// The thinnest brick, of the side that is cut: data are read in bricks, whatever they weigh.
 constexpr double thinnest = 1.0 / 16;
 /// Inverse of how much longer than others a side must be to be cut where all rays cross the cut.
-constexpr double least_preference = 0.4;
+constexpr double min_preference = 0.4;
 
 }  // namespace
 
@@ -32,7 +32,7 @@ BrickCuts::BrickCuts(const Affine<double>& world_from_frame, const Box<double>& 
     const Vec3<double> normal{frame_from_world.column[0][a], frame_from_world.column[1][a],
                               frame_from_world.column[2][a]};
     const double across = ray > 0 ? std::abs(dot(normal, view)) / (length(normal) * ray) : 0;
-    preference_[a] = 1 - (1 - least_preference) * across;
+    preference_[a] = 1 - (1 - min_preference) * across;
     if (!(bounds.lower[a] < bounds.upper[a])) {
       throw Error("bricks: the bounds of the data are empty along axis " + std::to_string(a));
     }

@@ -14,7 +14,7 @@ namespace {
 /// Opacity that rounding may hide from each of two bricks between which the half lies.
 constexpr double beside = 1e-5;
 /// Rays whose depths are reduced at once, in double.
-constexpr std::size_t most_at_once = std::size_t{1} << 20;
+constexpr std::size_t max_at_once = std::size_t{1} << 20;
 
 }  // namespace
 
@@ -48,9 +48,9 @@ std::vector<float> half_depths(Communicator& ranks, int place, const Scene& rays
   });
   // The nearest, where two bricks meet.
   std::vector<double> some;
-  for (std::size_t first = 0; first < depth.size(); first += most_at_once) {
+  for (std::size_t first = 0; first < depth.size(); first += max_at_once) {
     const auto begin = depth.begin() + static_cast<std::ptrdiff_t>(first);
-    const std::size_t count = std::min(most_at_once, depth.size() - first);
+    const std::size_t count = std::min(max_at_once, depth.size() - first);
     some.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
     ranks.reduce_all(some, Communicator::Reduction::minimum);
     std::ranges::transform(some, begin, [](double one) { return static_cast<float>(one); });

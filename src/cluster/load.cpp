@@ -14,7 +14,7 @@
 #include "pellucid/io/image_files.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
-#include "survey.h"
+#include "prepass.h"
 
 namespace pellucid {
 namespace {
@@ -210,11 +210,11 @@ class BrickLoader {
     for (const std::size_t i : seen_layers()) extents.push_back(extent(i));
     frame_ = frame_of(extents);
     const bool alone = extents.size() == 1 && plans_[seen_layers()[0]].in_parts;
-    constexpr int most_cells = 64;
+    constexpr int max_cells = 64;
     for (std::size_t a = 0; a < 3; ++a) {
       cells_[a] =
-          alone ? std::min(Survey::blocks_of(plans_[seen_layers()[0]].description)[a], most_cells)
-                : most_cells / 2;
+          alone ? std::min(Survey::blocks_of(plans_[seen_layers()[0]].description)[a], max_cells)
+                : max_cells / 2;
     }
   }
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int signal_tag = 7;
 /// Pixels that are composited at once: 24 MiB, and as much again as they are sent.
-constexpr std::size_t most_at_once = std::size_t{1} << 20;
+constexpr std::size_t max_at_once = std::size_t{1} << 20;
 
 void check(int code) {
   if (code == MPI_SUCCESS) return;
@@ -211,16 +211,16 @@ void MpiLink::reduce_all(std::span<double> values, Communicator::Reduction reduc
   const MPI_Op op = reduction == Communicator::Reduction::sum       ? MPI_SUM
                     : reduction == Communicator::Reduction::minimum ? MPI_MIN
                                                                     : MPI_MAX;
-  for (std::size_t first = 0; first < values.size(); first += most_at_once) {
-    const std::size_t count = std::min(most_at_once, values.size() - first);
+  for (std::size_t first = 0; first < values.size(); first += max_at_once) {
+    const std::size_t count = std::min(max_at_once, values.size() - first);
     check(MPI_Allreduce(MPI_IN_PLACE, values.data() + first, static_cast<int>(count), MPI_DOUBLE,
                         op, ranks_));
   }
 }
 
 void MpiLink::broadcast(std::span<float> values) {
-  for (std::size_t first = 0; first < values.size(); first += most_at_once) {
-    const std::size_t count = std::min(most_at_once, values.size() - first);
+  for (std::size_t first = 0; first < values.size(); first += max_at_once) {
+    const std::size_t count = std::min(max_at_once, values.size() - first);
     check(MPI_Bcast(values.data() + first, static_cast<int>(count), MPI_FLOAT, 0, ranks_));
   }
 }
@@ -236,8 +236,8 @@ void MpiLink::composite(std::span<RayPixel> pixels, int place, bool in_front) {
   check(MPI_Comm_rank(ordered, &own));
   check(MPI_Bcast(&root, 1, MPI_INT, 0, ranks_));
   std::vector<RayPixel> result;
-  for (std::size_t first = 0; first < pixels.size(); first += most_at_once) {
-    const std::size_t count = std::min(most_at_once, pixels.size() - first);
+  for (std::size_t first = 0; first < pixels.size(); first += max_at_once) {
+    const std::size_t count = std::min(max_at_once, pixels.size() - first);
     RayPixel* const some = pixels.data() + first;
     if (in_front) {
       result.assign(count, RayPixel{});

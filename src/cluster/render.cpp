@@ -10,6 +10,7 @@
 #include <string>
 
 #include "checksum.h"
+#include "error_repair.h"
 #include "final_image.h"
 #include "frame_watch.h"
 #include "half_depths.h"
@@ -18,7 +19,6 @@
 #include "pellucid/scene/error.h"
 #include "rank_projections.h"
 #include "rank_work.h"
-#include "second_look.h"
 
 namespace pellucid {
 namespace {
@@ -162,7 +162,7 @@ RankResult render(Communicator& ranks, const BrickTree& tree, const Scene& own,
   });
   check_frame(ranks, tree, own, options);
 
-  RankReport told;
+  RankReport report;
   FrameWatch watch(ranks, options.monitor.progress);
   Scene rays;
   std::vector<RayPixel> pixels, own_pixels;
@@ -173,9 +173,9 @@ RankResult render(Communicator& ranks, const BrickTree& tree, const Scene& own,
   const std::string outcome = outcome_of([&] {
     const Stopwatch watch_of_part;
     rays = scene_of_rays(own, 1);
-    told.most_bricks = most_bricks(tree, rays);
-    rays = scene_of_rays(own, told.most_bricks);
-    part_options = options_of_part(tree, options, told.most_bricks, rank, watch);
+    report.most_bricks = most_bricks(tree, rays);
+    rays = scene_of_rays(own, report.most_bricks);
+    part_options = options_of_part(tree, options, report.most_bricks, rank, watch);
     const std::size_t count =
         static_cast<std::size_t>(rays.size.width) * static_cast<std::size_t>(rays.size.height);
     const Scene all = rays;
@@ -184,7 +184,7 @@ RankResult render(Communicator& ranks, const BrickTree& tree, const Scene& own,
     if (!rays.layers.empty()) {
       const RenderResult part = renderer.render(rays, part_options);
       pixels = to_ray_pixels(part.image);
-      told.frame = part.report;
+      report.frame = part.report;
     }
     for (std::size_t i = 0; i < all.layers.size(); ++i) {
       if (!all.layers[i].visible || !all.layers[i].projection) continue;
@@ -208,8 +208,8 @@ RankResult render(Communicator& ranks, const BrickTree& tree, const Scene& own,
       if (rank == 0) over = rays_over_tolerance(own, pixels);
     });
     part_options.monitor.progress = [&](double) { return watch.tell(1); };
-    told.parts_again = look_again(
-        ranks, {tree, renderer, rays, part_options, place, told.most_bricks, own_part, pixels},
+    report.parts_again = look_again(
+        ranks, {tree, renderer, rays, part_options, place, report.most_bricks, own_part, pixels},
         over, [&](const std::function<void()>& work) {
           const std::string end = outcome_of(work);
           finish_together(ranks, watch, end);
@@ -219,22 +219,22 @@ RankResult render(Communicator& ranks, const BrickTree& tree, const Scene& own,
   if (options.outputs.depth && rays.layers.empty()) depth.assign(pixels.size(), INFINITY);
   if (options.outputs.depth && !rays.layers.empty())
     depth = half_depths(ranks, place, rays, part_options, pixels, own_part);
-  add_up(ranks, told.frame);
-  told.render_seconds = gather_numbers(ranks, render_seconds);
-  told.composite_seconds = gather_numbers(ranks, composite_seconds);
+  add_up(ranks, report.frame);
+  report.render_seconds = gather_numbers(ranks, render_seconds);
+  report.composite_seconds = gather_numbers(ranks, composite_seconds);
   for (ProjectedRays& of_layer : values) join(ranks, of_layer);
   Image image;
   agreed(ranks, [&] {
     if (rank != 0) return;
     if (!values.empty()) put_projections_over(own, values, pixels);
-    image = final_image(own, options, pixels, depth, told.frame);
+    image = final_image(own, options, pixels, depth, report.frame);
     if (!options.outputs.values) return;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       image.values.push_back(static_cast<float>(values.back().at(i).value));
     }
   });
-  told.frame.seconds = whole.seconds();
-  return {std::move(image), std::move(told)};
+  report.frame.seconds = whole.seconds();
+  return {std::move(image), std::move(report)};
 }
 
 RankResult render(Communicator& ranks, const Scene& whole, const RenderOptions& options) {

@@ -4,9 +4,9 @@
 // Light, surfaces and several variables take the general path, which is slower.
 #include "pellucid/scene/internal/left_out.h"
 
+#include "device/device_cache.h"
 #include "device/device_frame.h"
 #include "device/device_layer.h"
-#include "device/kept_devices.h"
 #include "grid/grid_light.h"
 #include "grid/packet_surfaces.h"
 #include "layers/layer_stream.h"
@@ -117,15 +117,15 @@ std::string reason_for_cpu(const Frame&, const RenderOptions&) {
   return "";
 }
 
-void render_on_device(const Frame&, const RenderOptions&, KeptDevice&, const ImageView&,
+void render_on_device(const Frame&, const RenderOptions&, CachedDevice&, const ImageView&,
                       RenderReport&) {
   throw left_out("what renders on devices");
 }
 
-std::shared_ptr<KeptDevice> KeptDevices::find(Device) {
+std::shared_ptr<CachedDevice> DeviceCache::find(Device) {
   throw left_out("what renders on devices");
 }
 
-void KeptDevices::clear() {}
+void DeviceCache::clear() {}
 
 }  // namespace pellucid

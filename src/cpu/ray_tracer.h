@@ -36,8 +36,8 @@ struct TraceOptions {
   /// parts.
   double share = 1;
   /// Fraction of that for traced rays: the remainder is kept for pixels that are interpolated with
-  /// the help of RayTracer::surroundings().
-  double share_of_rays = 1;
+  /// the help of RayTracer::interpolation_info().
+  double traced_tolerance_fraction = 1;
   /// Once it is requested, what a tracer returns does not matter.
   std::stop_token stop{};
 };
@@ -69,13 +69,13 @@ class RayTracer {
   }
 
   /// Data that are needed to interpolate pixels between rays.
-  struct Surroundings {
+  struct InterpolationInfo {
     const Volume& volume;  ///< whose grid it is
     ClassifiedBlocks blocks;
     double longest_step;  ///< voxels: how far apart rays may be at most
   };
   /// None: nothing is known of what is between rays.
-  virtual std::optional<Surroundings> surroundings() const { return std::nullopt; }
+  virtual std::optional<InterpolationInfo> interpolation_info() const { return std::nullopt; }
 };
 
 /// Layer, lights and options for which a tracer is made.

@@ -41,7 +41,8 @@ ParallelFor parallel_for(int threads) {
   };
 }
 
-void take_in_turn(std::size_t count, int threads, const std::function<bool(std::size_t)>& body) {
+void parallel_for_ordered(std::size_t count, int threads,
+                          const std::function<bool(std::size_t)>& body) {
   // oneTBB keeps to the number of cores, and prints a warning, unless it is told otherwise.
   std::optional<tbb::global_control> more_threads_than_cores;
   if (threads > default_thread_count()) {

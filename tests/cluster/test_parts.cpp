@@ -12,7 +12,7 @@
 #include "pellucid/cpu/renderer.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/internal/absorbing_blocks.h"
-#include "survey.h"
+#include "prepass.h"
 #include "tests/scenes/makers.h"
 
 namespace pellucid {

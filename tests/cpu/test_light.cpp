@@ -11,7 +11,7 @@
 
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/error.h"
-#include "src/cpu/layers/layer_look.h"
+#include "src/cpu/layers/layer_appearance.h"
 #include "tests/scenes/makers.h"
 
 namespace pellucid::test_light {
@@ -251,7 +251,7 @@ TEST(Light, AFactorGivesOneVariableTheOpacityAndAnotherTheColor) {
 TEST(Light, AFactorOfNegativeValuesHasArgumentsNoSmallerThanThose) {
   for (const double value : {-4.0, 4.0}) {
     const Layer layer = of_two_variables(2, value);
-    const LayerLook look(layer);
+    const LayerAppearance look(layer);
     const PiecewiseLinear<double> function = extinction_factor_of(layer)->function.view<double>();
     for (const double v : {-4.0, -3.5, 0.25, 4.0}) {
       if (v < value) continue;

@@ -11,7 +11,7 @@
 
 #include "pellucid/scene/multivariate_transfer_function.h"
 #include "pellucid/segment/gaussian_linear.h"
-#include "src/cpu/gaussians/near_mixture_storage.h"
+#include "src/cpu/gaussians/culled_mixture_storage.h"
 #include "tests/segment/line_exponent.h"
 
 namespace pellucid::test_near_mixture {
@@ -19,7 +19,7 @@ namespace {
 
 /// What binary32 takes for far has no more extinction than it may, of data in double, also far from
 /// 0; and it takes most of what is far for that.
-TEST(NearMixture, FarIsFar) {
+TEST(CulledMixture, FarIsFar) {
   std::mt19937_64 random(3);
   const auto uniform = [&](double a, double b) {
     return std::uniform_real_distribution<double>(a, b)(random);
@@ -48,7 +48,7 @@ TEST(NearMixture, FarIsFar) {
     const double opacity = power(1e-7, 1e-3), diagonal = power(0.1, 100);
     const std::vector<double> largest(max_channels, offset + 1);
     NearMixtureStorage storage(largest.data(), true, transfer, opacity, diagonal);
-    const NearMixture& mixture = storage.view();
+    const CulledMixture& mixture = storage.view();
     ASSERT_DOUBLE_EQ(mixture.left_out * diagonal, opacity);
     for (int span = 0; span < 50; ++span) {
       double front[max_channels], back[max_channels];
@@ -140,7 +140,7 @@ struct BoxCase {
 /// Boxes of values in which a primitive is far in binary32 have no more extinction of it than they
 /// may, by a hair where it is there to see; where no row looks at two channels this is all that are
 /// far, elsewhere most of them.
-TEST(NearMixture, FarFromABoxIsFar) {
+TEST(CulledMixture, FarFromABoxIsFar) {
   std::mt19937_64 random(11);
   const auto uniform = [&](double a, double b) {
     return std::uniform_real_distribution<double>(a, b)(random);
@@ -196,7 +196,7 @@ TEST(NearMixture, FarFromABoxIsFar) {
 }
 
 /// Extinction changes by no more than steepness times what the data do.
-TEST(NearMixture, SteepnessBoundsChanges) {
+TEST(CulledMixture, SteepnessBoundsChanges) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
   double largest = 0;
@@ -219,7 +219,7 @@ TEST(NearMixture, SteepnessBoundsChanges) {
     const MultivariateTransferFunction function(count, primitives);
     const std::vector<double> values(max_channels, 1.0);
     NearMixtureStorage storage(values.data(), true, function.view(), 1e-3, 1);
-    const NearMixture& mixture = storage.view();
+    const CulledMixture& mixture = storage.view();
     ASSERT_TRUE(storage.suits_packets());
     for (int n = 0; n < 200; ++n) {
       double a[max_channels], b[max_channels], bound = 0;
@@ -239,7 +239,7 @@ TEST(NearMixture, SteepnessBoundsChanges) {
 
 /// |K (v - c)| is at least least_scale times the distance in a channel, and that is where the other
 /// channels make it least.
-TEST(NearMixture, LeastScaleIsReached) {
+TEST(CulledMixture, LeastScaleIsReached) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   int reached = 0, without = 0;
@@ -284,7 +284,7 @@ TEST(NearMixture, LeastScaleIsReached) {
   EXPECT_GT(without, 100);
 }
 
-TEST(NearMixture, WhatBinary32HasNotIsNotForPackets) {
+TEST(CulledMixture, WhatBinary32HasNotIsNotForPackets) {
   GaussianPrimitive p;
   p.channels = {0};
   p.center = {0};

@@ -78,7 +78,7 @@ TEST(TakeInTurn, TakesEachOnceAndInOrder) {
     std::vector<std::atomic<int>> taken(1000);
     std::vector<std::size_t> order;
     std::mutex mutex;
-    take_in_turn(taken.size(), threads, [&](std::size_t i) {
+    parallel_for_ordered(taken.size(), threads, [&](std::size_t i) {
       ++taken[i];
       const std::lock_guard lock(mutex);
       order.push_back(i);
@@ -95,7 +95,7 @@ TEST(TakeInTurn, StopsWithinWhatTheThreadsHaveTaken) {
   for (const int threads : {1, 2, 7}) {
     std::atomic<std::size_t> taken{0}, after{0};
     std::atomic<bool> stopped{false};
-    take_in_turn(100000, threads, [&](std::size_t) {
+    parallel_for_ordered(100000, threads, [&](std::size_t) {
       if (stopped) ++after;
       if (++taken >= stopping) stopped = true;
       std::this_thread::sleep_for(std::chrono::microseconds(10));
@@ -110,13 +110,13 @@ TEST(TakeInTurn, StopsWithinWhatTheThreadsHaveTaken) {
 TEST(TakeInTurn, AnExceptionEndsItAndComesOut) {
   for (const int threads : {1, 3}) {
     std::atomic<std::size_t> taken{0};
-    EXPECT_THROW(take_in_turn(100000, threads,
-                              [&](std::size_t i) {
-                                ++taken;
-                                if (i == 10) throw std::runtime_error("here");
-                                std::this_thread::sleep_for(std::chrono::microseconds(10));
-                                return true;
-                              }),
+    EXPECT_THROW(parallel_for_ordered(100000, threads,
+                                      [&](std::size_t i) {
+                                        ++taken;
+                                        if (i == 10) throw std::runtime_error("here");
+                                        std::this_thread::sleep_for(std::chrono::microseconds(10));
+                                        return true;
+                                      }),
                  std::runtime_error);
     EXPECT_LT(taken, 1000u);
   }

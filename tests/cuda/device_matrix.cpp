@@ -32,7 +32,7 @@ std::vector<std::string> faults_of(const MatrixCell& cell, const GalleryEntry& e
   if (goes_to_cpu(report)) faults.push_back(report.device);
   if (!verdict.kept()) faults.push_back(verdict.text());
   const bool may_give_up = cell.grade == Grade::proved && entry.least_proved > 0;
-  if (cell.tolerance >= entry.least_tolerance && !may_give_up && verdict.said_over != 0) {
+  if (cell.tolerance >= entry.min_tolerance && !may_give_up && verdict.said_over != 0) {
     faults.push_back(std::to_string(verdict.said_over) +
                      " pixels say that they are over: " + verdict.text());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "src/cpu/device/kept_devices.h"
+#include "src/cpu/device/device_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -31,10 +31,10 @@ class KeptFrames {
 
   RenderOptions options_;
   LayerSetups setups_;
-  KeptDevices devices_;
+  DeviceCache devices_;
 };
 
-TEST(KeptDevices, UploadNothingWhenTheCameraMoves) {
+TEST(DeviceCache, UploadNothingWhenTheCameraMoves) {
   for (auto& [name, scene] : device_examples(8)) {
     SCOPED_TRACE(name);
     KeptFrames frames;
@@ -46,7 +46,7 @@ TEST(KeptDevices, UploadNothingWhenTheCameraMoves) {
   }
 }
 
-TEST(KeptDevices, KeepTheDataWhenTheFunctionChanges) {
+TEST(DeviceCache, KeepTheDataWhenTheFunctionChanges) {
   constexpr std::uint64_t bytes = 40 * 40 * 40 * sizeof(float);
   Scene scene = device_examples(8)[0].scene;
   scene.layers = {grid({40, 40, 40}, jumps(3))};
@@ -62,7 +62,7 @@ TEST(KeptDevices, KeepTheDataWhenTheFunctionChanges) {
   }
 }
 
-TEST(KeptDevices, LetGoOfDataThatAreNotShown) {
+TEST(DeviceCache, LetGoOfDataThatAreNotShown) {
   const auto examples = device_examples(8);
   KeptFrames frames;
   frames.upload(examples[0].scene);

@@ -95,8 +95,8 @@ PELLUCID_HD void blocks_of(const T* in, T* out) noexcept {
     const BlockRange range = blocks.range(step.block);
     const double length = step.t_end - step.t_begin;
     out[0] += static_cast<T>(bend_deviation(derivative_oscillation(range, ray.direction), length));
-    out[1] += static_cast<T>(
-        derivative_variation(blocks.bends(step.block), ray.direction, blocks.least_width, length));
+    out[1] += static_cast<T>(derivative_variation(blocks.curvature(step.block), ray.direction,
+                                                  blocks.least_width, length));
     return !range.constant;
   });
 }

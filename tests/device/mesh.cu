@@ -5,14 +5,14 @@
 namespace pellucid {
 
 /// Rays with more hits than this are not for the device.
-constexpr int most_hits = 64;
+constexpr int max_hits = 64;
 
 /// Where a ray meets the boundary, in ascending order.
 PELLUCID_HD inline MeshRay find_hits(const Tetrahedra& mesh, const Ray<double>& ray,
-                                     MeshHit (&hits)[most_hits]) noexcept {
+                                     MeshHit (&hits)[max_hits]) noexcept {
   MeshRay found{make_ray_frame(ray, mesh.center(), mesh.coordinate_bound), hits, 0};
   for_each_boundary_hit(mesh, ray, found.view, [&](const MeshHit& hit) {
-    int place = found.count < most_hits ? found.count++ : most_hits - 1;
+    int place = found.count < max_hits ? found.count++ : max_hits - 1;
     for (; place > 0 && hit < hits[place - 1]; --place) hits[place] = hits[place - 1];
     hits[place] = hit;
   });
@@ -27,7 +27,7 @@ __global__ void render_mesh(Tetrahedra mesh, MeshFields fields, TransferTables t
   const int pixel = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (pixel >= camera.width * camera.height) return;
   const Ray<double> ray = camera.ray(pixel % camera.width, pixel / camera.width);
-  MeshHit hits[most_hits];
+  MeshHit hits[max_hits];
   RayResult& result = pixels[pixel];
   // The hits are used up each time.
   if (fields.channels > 1) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/packet/packet_parts.h"
 
-#include "pellucid/packet/bundle/near_mixture.h"
+#include "pellucid/packet/bundle/culled_mixture.h"
+#include "pellucid/packet/lane_compositor.h"
 #include "pellucid/packet/lane_spans.h"
-#include "pellucid/packet/packet_fold.h"
 #include "pellucid/segment/constant.h"
 #include "pellucid/simd/instruction_set.h"
 
@@ -34,7 +34,7 @@ int take_oldest(const std::int32_t* waiting, unsigned of_lanes, int next, std::i
 void fold(const packet_parts::Fold& wanted, int spans, packet_parts::FoldResult* result) {
   const F length(static_cast<float>(wanted.length)),
       step(static_cast<float>(wanted.length / spans));
-  PacketFold<N> rays(wanted.tolerance, wanted.largest_extinction, wanted.largest_color, length);
+  LaneCompositor<N> rays(wanted.tolerance, wanted.largest_extinction, wanted.largest_color, length);
   const F opacity = F::load(wanted.opacity);
   M alive(true);
   for (int l = 0; l < N; ++l) result->spans[l] = result->could_end[l] = -1;

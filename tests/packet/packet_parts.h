@@ -30,7 +30,7 @@ struct Operations {
   /// often rows were loaded.
   int (*take_oldest)(const std::int32_t* waiting, unsigned of_lanes, int next, std::int32_t* row,
                      std::int32_t* left);
-  /// PacketFold, so many spans.
+  /// LaneCompositor, so many spans.
   void (*fold)(const Fold& fold, int spans, FoldResult* result);
   /// least_exponent_by_rows() of boxes beside each other, per channel and lane.
   void (*least_exponents)(const void* near, const float* lower, const float* upper, float* least);

@@ -93,7 +93,7 @@ Scene make_scene(const Wanted& wanted, unsigned seed) {
 struct Seen {
   double largest_of_error = 0;  ///< share of a pixel's own error
   double largest = 0;
-  std::uint64_t handed_back = 0, pixels = 0, bright = 0;
+  std::uint64_t scalar_fallback = 0, pixels = 0, bright = 0;
 };
 
 /// The scene in packets of each instruction set, at some tolerances, against rays one by one in
@@ -115,7 +115,7 @@ void compare(Scene scene, Seen& seen) {
       SCOPED_TRACE(testing::Message() << name_of(set) << " at " << tolerance);
       scene.integration.tolerance = tolerance;
       const auto [image, report] = render(scene, options);
-      seen.handed_back += report.spans.in_double;
+      seen.scalar_fallback += report.spans.in_double;
       for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         const double said = static_cast<double>(image.error[i]);
         ASSERT_LE(said, tolerance * (1 + 1e-6)) << "pixel " << i;
@@ -162,7 +162,7 @@ TYPED_TEST(PacketFrames, AreWithinTheirErrors) {
     compare(make_scene<TypeParam>(wanted, ++number), seen);
     if (this->HasFatalFailure()) return;
   }
-  EXPECT_GT(seen.handed_back, 100u);
+  EXPECT_GT(seen.scalar_fallback, 100u);
   EXPECT_GT(seen.bright, seen.pixels / 10);
   this->RecordProperty("largest_error_of_said", std::to_string(seen.largest_of_error));
   this->RecordProperty("largest_error_of_tolerance", std::to_string(seen.largest));

@@ -43,7 +43,7 @@ Scene random_scene(std::mt19937& random, int kind) {
 TEST(LitFrames, AreWithinWhatTheySayOfTheGeneralPath) {
   if (no_packets()) GTEST_SKIP() << "this machine has none of the instruction sets of packets";
   std::mt19937 random(3);
-  std::uint64_t handed_back = 0, panels = 0;
+  std::uint64_t scalar_fallback = 0, panels = 0;
   for (int n = 0; n < 48; ++n) {
     Scene scene = random_scene(random, n % 4);
     scene.integration.tolerance = 1e-6;
@@ -54,7 +54,7 @@ TEST(LitFrames, AreWithinWhatTheySayOfTheGeneralPath) {
         scene.integration.tolerance = tolerance;
         RenderReport report;
         const Image image = frame(scene, set, &report);
-        handed_back += report.spans.in_double;
+        scalar_fallback += report.spans.in_double;
         panels += report.spans.panels;
         SCOPED_TRACE(testing::Message() << "scene " << n << ", tolerance " << tolerance);
         for (const float error : image.error) ASSERT_LE(static_cast<double>(error), tolerance);
@@ -64,7 +64,7 @@ TEST(LitFrames, AreWithinWhatTheySayOfTheGeneralPath) {
     }
   }
   // They are what is tested: most pieces are not handed back.
-  EXPECT_GT(panels, 10 * handed_back);
+  EXPECT_GT(panels, 10 * scalar_fallback);
 }
 
 /// Along the diagonal of a cell with a value at two corners and another at the others, whose data

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "pellucid/packet/bundle/near_mixture.h"
+#include "pellucid/packet/bundle/culled_mixture.h"
 #include "tests/packet/packet_parts.h"
 #include "tests/simd/every_instruction_set.h"
 

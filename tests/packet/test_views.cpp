@@ -7,7 +7,7 @@
 
 #include "pellucid/field/multichannel_grid.h"
 #include "pellucid/field/tetrahedra.h"
-#include "pellucid/packet/bundle/near_mixture.h"
+#include "pellucid/packet/bundle/culled_mixture.h"
 #include "pellucid/packet/layers/lane_mixture.h"
 #include "pellucid/packet/light.h"
 #include "pellucid/packet/mesh_interface.h"

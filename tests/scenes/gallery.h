@@ -38,7 +38,7 @@ struct GalleryEntry {
   std::filesystem::path file{};  ///< that `make` reads; empty: none
   /// Below this tolerance pixels may say that they are over it: the data, the table or the image
   /// does not have the digits.
-  double least_tolerance = 0;
+  double min_tolerance = 0;
   /// Below this tolerance the grade `proved` is left out, and pixels of it may say that they are
   /// over it: where proofs take so many panels that a ray gives up.
   double least_proved = 0;

@@ -12,7 +12,7 @@ Gallery marschner_lobb_gallery() {
   };
   // The table itself is rounded by a hundredth of the peak's width in float.
   GalleryEntry thinnest = entry("peak 2e-6", [] { return peak_transfer(1e5, 2e-6); });
-  thinnest.least_tolerance = 1e-4;
+  thinnest.min_tolerance = 1e-4;
   return {entry("ramp",
                 [] {
                   return transfer({{0, 0.1, {0.2, 0.4, 1}}, {1, 1.5, {1, 0.6, 0.1}}});

@@ -280,7 +280,7 @@ struct RealMesh {
   const char *name, *file, *array;
   double extinction;  ///< times the size of the mesh: largest
   /// As that of GalleryEntry. The can is crushed into itself: rays there cannot know.
-  double least_tolerance = 0;
+  double min_tolerance = 0;
 };
 
 constexpr RealMesh real_meshes[] = {
@@ -314,7 +314,7 @@ GalleryEntry entry_of(const RealMesh& real) {
     }
     return exhibit(mesh, std::move(points));
   };
-  return {std::string("mesh: ") + real.name, make, file, real.least_tolerance};
+  return {std::string("mesh: ") + real.name, make, file, real.min_tolerance};
 }
 
 }  // namespace

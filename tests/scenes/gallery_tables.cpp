@@ -89,7 +89,7 @@ Gallery table_gallery() {
   entries.push_back(entry("a solid surface", smooth, surface));
   entries.push_back(entry("colors of 50 behind a veil", ball, bright_behind_a_veil));
   entries.push_back(entry("colors of 50", smooth, bright));
-  entries.back().least_tolerance = 1e-5;
+  entries.back().min_tolerance = 1e-5;
   entries.push_back(entry("light in a dark medium", smooth, dark));
   return entries;
 }

@@ -14,7 +14,7 @@ namespace pellucid::scenes {
 namespace {
 
 /// Of the size of a mesh: what overlaps by less does so by rounding.
-constexpr double least_overlap = 1e-12;
+constexpr double min_overlap = 1e-12;
 
 std::array<double, 4> reference_pixel(const ReferenceRays& rays, const Scene& scene,
                                       const CameraFrame<double>& camera, int column, int row,
@@ -30,7 +30,7 @@ std::array<double, 4> reference_pixel(const ReferenceRays& rays, const Scene& sc
   for (int n = 0; n < count; ++n) {
     const Ray<double> ray = camera.ray(column, row, n, samples);
     const ReferencePixel pixel = rays(ray.origin, ray.direction, end);
-    if (pixel.overlap > least_overlap * size) sum.fill(std::numeric_limits<double>::quiet_NaN());
+    if (pixel.overlap > min_overlap * size) sum.fill(std::numeric_limits<double>::quiet_NaN());
     const double channel[4] = {pixel.radiance.r, pixel.radiance.g, pixel.radiance.b, pixel.opacity};
     for (std::size_t c = 0; c < 4; ++c) sum[c] += channel[c] / count;
   }

@@ -43,7 +43,7 @@ TEST(Judge, MeasuresAndPlacesTheLargestError) {
   EXPECT_EQ(verdict.reported, 0.25);
   EXPECT_EQ(verdict.proved, 1);
   EXPECT_EQ(verdict.brightest, 1);
-  EXPECT_NEAR(verdict.least_share, 1, 1e-9);
+  EXPECT_NEAR(verdict.min_share, 1, 1e-9);
   EXPECT_TRUE(verdict.kept()) << verdict.text();
   EXPECT_EQ(verdict.said_over, 0);
 }
@@ -64,7 +64,7 @@ TEST(Judge, CountsPixelsOverWhatTheyReport) {
   EXPECT_EQ(verdict.over, 0);
   EXPECT_EQ(verdict.over_reported, 1);
   EXPECT_NEAR(verdict.beyond, 1e-4, 1e-6);
-  EXPECT_LT(verdict.least_share, 1);
+  EXPECT_LT(verdict.min_share, 1);
   EXPECT_FALSE(verdict.kept());
 }
 

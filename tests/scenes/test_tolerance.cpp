@@ -18,7 +18,7 @@ namespace {
 
 class ToleranceMatrix : public testing::TestWithParam<GalleryEntry> {};
 
-void expect_kept(const MatrixRow& row, double least_tolerance, double least_proved) {
+void expect_kept(const MatrixRow& row, double min_tolerance, double least_proved) {
   EXPECT_GT(row.brightest, 0) << row.camera << ": there is nothing to see, so nothing is tested";
   for (const MatrixCell& cell : row.cells) {
     const Verdict& verdict = cell.verdict;
@@ -30,7 +30,7 @@ void expect_kept(const MatrixRow& row, double least_tolerance, double least_prov
                                 << verdict.text();
     // Where proofs are of the first order, a ray may give up.
     const bool may_give_up = cell.grade == Grade::proved && least_proved > 0;
-    if (cell.tolerance >= least_tolerance && !may_give_up) {
+    if (cell.tolerance >= min_tolerance && !may_give_up) {
       EXPECT_EQ(verdict.said_over, 0)
           << where << ", tolerance " << cell.tolerance << ": " << verdict.text();
     }
@@ -82,7 +82,7 @@ TEST_P(ToleranceMatrix, NoPixelIsOver) {
   ASSERT_EQ(exhibit.cameras.size(), 3u);
   if (all_cameras()) {
     for (std::size_t camera = 0; camera < 3; ++camera) {
-      expect_kept(measure_row(entry.name, exhibit, camera, options), entry.least_tolerance,
+      expect_kept(measure_row(entry.name, exhibit, camera, options), entry.min_tolerance,
                   entry.least_proved);
     }
     return;
@@ -96,7 +96,7 @@ TEST_P(ToleranceMatrix, NoPixelIsOver) {
   } else {
     std::printf("[ truth    ] %s: not in the file, so made anew\n", entry.name.c_str());
   }
-  expect_kept(measure_row(entry.name, exhibit, camera, options), entry.least_tolerance,
+  expect_kept(measure_row(entry.name, exhibit, camera, options), entry.min_tolerance,
               entry.least_proved);
 }
 

@@ -66,7 +66,7 @@ Verdict judge(const Image& image, const ReferenceFrame& reference, double tolera
     throw std::invalid_argument("the image does not report an error for every pixel");
   }
   Verdict verdict;
-  verdict.least_share = infinity;
+  verdict.min_share = infinity;
   for (std::size_t p = 0; p < count; ++p) {
     const PixelError error = pixel_error(image.pixels[p], reference.pixels[p]);
     const Verdict::Place place{static_cast<int>(p) % image.width, static_cast<int>(p) / image.width,
@@ -92,7 +92,7 @@ Verdict judge(const Image& image, const ReferenceFrame& reference, double tolera
       }
     }
     if (error.largest > 0) {
-      verdict.least_share = std::min(verdict.least_share, reported / error.largest);
+      verdict.min_share = std::min(verdict.min_share, reported / error.largest);
     }
     if (error.largest > verdict.found) {
       verdict.found = error.largest;

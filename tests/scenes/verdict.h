@@ -31,7 +31,7 @@ struct Verdict {
   int said_over = 0;      ///< pixels that report an error above the tolerance
   double reported = 0;    ///< largest error that any pixel reports
   /// Least (reported error / error) of a pixel with an error: below 1 where a report is too small.
-  double least_share = 0;
+  double min_share = 0;
   int proved = 0;        ///< pixels whose reported error is a proved bound
   double brightest = 0;  ///< largest channel of the reference
 

@@ -17,12 +17,12 @@ namespace {
 
 using test::Maker;
 
-constexpr int most_rows = 2;
+constexpr int max_rows = 2;
 
 /// A Gaussian along a curve K (v - c) in the plane, a cubic.
 struct Curve {
   int rows = 1;
-  CubicBernstein<double> p[most_rows];
+  CubicBernstein<double> p[max_rows];
   double peak = 1, color = 0;
 
   double square(double u) const {
@@ -91,7 +91,7 @@ struct EstimatedPanel {
   EstimatedPanel(Maker& maker, double most)
       : curves(1 + static_cast<std::size_t>(maker.pick(3))), limit(most) {
     for (Curve& c : curves) {
-      c.rows = 1 + maker.pick(most_rows);
+      c.rows = 1 + maker.pick(max_rows);
       for (int i = 0; i < c.rows; ++i) {
         double at = maker.uniform(-limit - 1, limit + 1);
         for (double& b : c.p[i].b) {
@@ -428,8 +428,8 @@ TEST(GaussianNodes, RoundingIsWithinItsBound) {
     }
     for (std::size_t k = 0; k < all.size(); ++k) {
       const Curve& c = panel.curves[k];
-      double first[most_rows], difference[3][most_rows];
-      float first_in_float[most_rows], difference_in_float[3][most_rows];
+      double first[max_rows], difference[3][max_rows];
+      float first_in_float[max_rows], difference_in_float[3][max_rows];
       for (int i = 0; i < c.rows; ++i) {
         first[i] = c.p[i].b[0];
         first_in_float[i] = static_cast<float>(first[i]);

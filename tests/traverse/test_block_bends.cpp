@@ -59,10 +59,11 @@ void expect_chords_within(int padding, bool rectilinear, const char* name) {
     const Ray<double> ray{from, way * (1 / std::sqrt(dot(way, way)))};
     const double length = std::sqrt(dot(way, way)) * std::pow(unit(random), 3);
     if (!(length > 1e-3)) continue;
-    BlockBends bends{};
+    CurvatureBounds bends{};
     bool first = true;
     for_each_block(grid.blocks, ray, {0, length}, [&](const BlockStep& step) {
-      bends = first ? grid.blocks.bends(step.block) : join(bends, grid.blocks.bends(step.block));
+      bends = first ? grid.blocks.curvature(step.block)
+                    : join(bends, grid.blocks.curvature(step.block));
       first = false;
       return true;
     });
@@ -83,7 +84,7 @@ void expect_chords_within(int padding, bool rectilinear, const char* name) {
   EXPECT_GT(ratio.largest(), 0.2L);
 }
 
-TEST(BlockBends, NoChordIsLeftByMoreThanTheBound) {
+TEST(CurvatureBounds, NoChordIsLeftByMoreThanTheBound) {
   expect_chords_within<std::uint8_t>(0, false, "u8");
   expect_chords_within<std::int16_t>(1, false, "i16, cell-centred");
   expect_chords_within<float>(0, false, "f32");
@@ -91,30 +92,30 @@ TEST(BlockBends, NoChordIsLeftByMoreThanTheBound) {
   expect_chords_within<std::int32_t>(1, true, "i32, rectilinear, cell-centred");
 }
 
-TEST(BlockBends, OfAHatIsTheJumpOfItsSlopes) {
+TEST(CurvatureBounds, OfAHatIsTheJumpOfItsSlopes) {
   // Height 10 in plane x = 8, which two blocks share: it is the upper face of the first.
   const BlockedGrid<float> hat(0, false, [](int x, int, int) { return x == 8 ? 10 : 0; });
   const auto expect_near = [](float bound, float truth) {  // one of 128 steps
     EXPECT_GE(bound, truth);
     EXPECT_LE(bound, truth * (1 + 1 / 128.0f));
   };
-  expect_near(hat.blocks.bends(0).bend[0], 20);
-  EXPECT_NEAR(hat.blocks.bends(0).bend[1], 0, 1e-12);
-  EXPECT_NEAR(hat.blocks.bends(0).twist[0], 0, 1e-12);
+  expect_near(hat.blocks.curvature(0).second_difference[0], 20);
+  EXPECT_NEAR(hat.blocks.curvature(0).second_difference[1], 0, 1e-12);
+  EXPECT_NEAR(hat.blocks.curvature(0).twist[0], 0, 1e-12);
   // The second block sees the kink at x = 9.
-  expect_near(hat.blocks.bends(1).bend[0], 10);
+  expect_near(hat.blocks.curvature(1).second_difference[0], 10);
   const BlockedGrid<std::uint8_t> saddle(0, false, [](int x, int y, int) { return x * y; });
-  EXPECT_EQ(saddle.blocks.bends(0).twist[2], 1);
-  EXPECT_EQ(saddle.blocks.bends(0).bend[0], 0);
+  EXPECT_EQ(saddle.blocks.curvature(0).twist[2], 1);
+  EXPECT_EQ(saddle.blocks.curvature(0).second_difference[0], 0);
 }
 
-TEST(BlockBends, VacuumIsUnboundedAndItsNeighbourKeepsItsBound) {
+TEST(CurvatureBounds, VacuumIsUnboundedAndItsNeighbourKeepsItsBound) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const BlockedGrid<float> grid(0, false, [&](int x, int, int) {
     return x == 9 ? nan : x == 7 ? 10.0f : 0.0f;
   });
-  EXPECT_GE(grid.blocks.bends(0).bend[0], 20);
-  EXPECT_TRUE(std::isinf(grid.blocks.bends(1).bend[0]));
+  EXPECT_GE(grid.blocks.curvature(0).second_difference[0], 20);
+  EXPECT_TRUE(std::isinf(grid.blocks.curvature(1).second_difference[0]));
 }
 
 }  // namespace

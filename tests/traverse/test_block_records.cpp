@@ -28,7 +28,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// The data of some cells, the derivatives along the axes and how these change, by definition.
 struct WideBlock {
   Wide lower, upper;
-  Wide slope_min[3], slope_max[3], bend[3], twist[3];
+  Wide slope_min[3], slope_max[3], second_difference[3], twist[3];
   Wide largest = 0;
   int cells = 0, solid = 0;
 };
@@ -58,7 +58,7 @@ template <class Value>
 WideBlock wide_block(const StructuredGrid<Value, double>& grid, const int (&first)[3],
                      const int (&last)[3]) {
   WideBlock w;
-  for (int a = 0; a < 3; ++a) w.bend[a] = w.twist[a] = 0;
+  for (int a = 0; a < 3; ++a) w.second_difference[a] = w.twist[a] = 0;
   int n[3];
   for (n[2] = first[2]; n[2] <= last[2]; ++n[2]) {
     for (n[1] = first[1]; n[1] <= last[1]; ++n[1]) {
@@ -71,8 +71,9 @@ WideBlock wide_block(const StructuredGrid<Value, double>& grid, const int (&firs
           if (n[a] > first[a] && n[a] < grid.axis[a].cells()) {
             int before[3] = {n[0], n[1], n[2]};
             --before[a];
-            const Wide bend = abs(slope(grid, a, n) - slope(grid, a, before));
-            if (!isnan(bend)) w.bend[a] = std::max(w.bend[a], bend);
+            const Wide second_difference = abs(slope(grid, a, n) - slope(grid, a, before));
+            if (!isnan(second_difference))
+              w.second_difference[a] = std::max(w.second_difference[a], second_difference);
           }
           if (n[b] < last[b] && n[c] < last[c]) {
             int beside[3] = {n[0], n[1], n[2]};
@@ -128,13 +129,14 @@ std::string check(const BlockField<Value>& f, int block) {
   }
   const WideBlock truth = wide_block(f.grid, first, last);
   const BlockRange r = f.blocks.range(block);
-  const BlockBends bends = f.blocks.bends(block);
+  const CurvatureBounds bends = f.blocks.curvature(block);
   if (r.vacuum != (truth.solid == truth.cells ? BlockVacuum::none
                    : truth.solid == 0         ? BlockVacuum::all
                                               : BlockVacuum::some)) {
     return "vacuum";
   }
-  if (r.vacuum != BlockVacuum::none && !(std::isinf(bends.bend[0]) && std::isinf(bends.twist[2]))) {
+  if (r.vacuum != BlockVacuum::none &&
+      !(std::isinf(bends.second_difference[0]) && std::isinf(bends.twist[2]))) {
     return "bends beside vacuum";
   }
   if (truth.solid == 0) return r.oscillation[0] == 0 ? "" : "not zero where all is vacuum";
@@ -160,8 +162,9 @@ std::string check(const BlockField<Value>& f, int block) {
     if (!just_above(kept, oscillation, rounding * inverse[a])) return "oscillation";
     if (oscillation == 0 && truth.slope_max[a] == 0 && kept != 0) return "oscillation of nothing";
     if (r.vacuum != BlockVacuum::none) continue;
-    if (!just_above(static_cast<double>(bends.bend[a]), truth.bend[a], rounding * inverse[a])) {
-      return "bend";
+    if (!just_above(static_cast<double>(bends.second_difference[a]), truth.second_difference[a],
+                    rounding * inverse[a])) {
+      return "second_difference";
     }
     if (!just_above(static_cast<double>(bends.twist[a]), truth.twist[a],
                     rounding * inverse[b] * inverse[c])) {
@@ -323,8 +326,8 @@ TEST(BlockRecords, CellsTooNarrowToDivideByAreUnboundedBesideVacuumToo) {
     });
     f.build();
     EXPECT_EQ(f.blocks.range(0).oscillation[0], float_infinity);
-    EXPECT_EQ(f.blocks.bends(0).bend[0], float_infinity);
-    EXPECT_EQ(f.blocks.bends(0).twist[2], float_infinity);
+    EXPECT_EQ(f.blocks.curvature(0).second_difference[0], float_infinity);
+    EXPECT_EQ(f.blocks.curvature(0).twist[2], float_infinity);
     EXPECT_LT(f.blocks.range(0).oscillation[1], 1e-10f);
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "view/server/gate.h"
+#include "view/server/access_control.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ class GateTest : public testing::Test {
  protected:
   bool admits(const Caller& caller) const { return gate.admit(caller).has_value(); }
 
-  const Gate gate{"0123abcd", 8080};
+  const AccessControl gate{"0123abcd", 8080};
 };
 
 TEST_F(GateTest, AdmitsItsPage) {

@@ -76,10 +76,10 @@ RelativePicture render_relative(double share, double estimated_range,
                                 const std::function<RenderResult(double tolerance)>& render_at) {
   // The range is not known before the picture is; a little less makes a second rendering rare.
   constexpr double margin = 0.9;
-  constexpr int most_renderings = 6;
+  constexpr int max_renderings = 6;
   RelativePicture picture;
   double range = estimated_range, seconds = 0;
-  for (int i = 0; i < most_renderings; ++i) {
+  for (int i = 0; i < max_renderings; ++i) {
     picture.tolerance = std::clamp(margin * share * range, 1e-30, largest_tolerance);
     RenderResult frame = render_at(picture.tolerance);
     picture.image = std::move(frame.image);

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_entries = 5000;
+constexpr std::size_t max_entries = 5000;
 
 std::vector<std::string> known_extensions() {
   std::istringstream words(volume_extensions() + " " + mesh_extensions() + " .json .dcm");
@@ -82,7 +82,7 @@ Json folder_json(const std::string& folder) {
   for (; !failure && at != fs::directory_iterator(); at.increment(failure)) {
     Entry entry;
     if (!read_entry(*at, entry)) continue;
-    if (entries.size() < most_entries) {
+    if (entries.size() < max_entries) {
       entries.push_back(std::move(entry));
     } else {
       ++left_out;

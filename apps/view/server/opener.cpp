@@ -14,7 +14,7 @@ namespace pellucid::view {
 namespace {
 
 /// A page that asks for more, while a file is read, is not ours.
-constexpr std::size_t most_waiting = 64;
+constexpr std::size_t max_waiting = 64;
 
 }  // namespace
 
@@ -33,7 +33,7 @@ Opener::~Opener() {
 
 void Opener::list(PageId page, std::string folder) {
   const std::lock_guard lock(mutex_);
-  if (tasks_.size() >= most_waiting) return;
+  if (tasks_.size() >= max_waiting) return;
   tasks_.emplace_back(page, [this, page, folder = std::move(folder)] {
     send_(page, text_message(folder_json(folder)));
   });
@@ -42,7 +42,7 @@ void Opener::list(PageId page, std::string folder) {
 
 void Opener::open(PageId page, OpenRequest request) {
   const std::lock_guard lock(mutex_);
-  if (tasks_.size() >= most_waiting) return;
+  if (tasks_.size() >= max_waiting) return;
   tasks_.emplace_back(page, [this, request = std::move(request)] { read(request); });
   wakes_.notify_one();
 }

@@ -68,7 +68,8 @@ PageServer::PageServer(std::uint16_t port, PageEvents events, ServerLimits limit
     throw Error("port " + std::to_string(port) + ": " + error.code().message() +
                 "; choose another one by --port, or leave it out");
   }
-  state.gate = std::make_unique<Gate>(make_token(), state.acceptor.local_endpoint().port());
+  state.gate =
+      std::make_unique<AccessControl>(make_token(), state.acceptor.local_endpoint().port());
   state.address = state.gate->address();
 }
 

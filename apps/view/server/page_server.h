@@ -46,8 +46,8 @@ struct ServerLimits {
   std::size_t waiting_bytes = std::size_t(256) << 20;
 };
 
-/// Serves the page and its WebSockets on the loopback interface, to those whom the Gate admits.
-/// Others are answered 403 without a word. One thread runs it.
+/// Serves the page and its WebSockets on the loopback interface, to those whom the AccessControl
+/// admits. Others are answered 403 without a word. One thread runs it.
 class PageServer {
  public:
   /// Binds the port; 0: any that is free. Throws Error if that fails. `frame_ancestors`: who may

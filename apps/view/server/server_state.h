@@ -15,7 +15,7 @@
 #include <map>
 #include <memory>
 
-#include "gate.h"
+#include "access_control.h"
 #include "page_server.h"
 
 namespace pellucid::view {
@@ -47,7 +47,7 @@ struct PageServer::State : std::enable_shared_from_this<PageServer::State> {
   net::io_context& context;
   PageEvents events;
   ServerLimits limits;
-  std::unique_ptr<Gate> gate;
+  std::unique_ptr<AccessControl> gate;
   std::string address;
   std::string frame_ancestors = "'none'";  ///< for the Content Security Policy
   net::ip::tcp::acceptor acceptor;

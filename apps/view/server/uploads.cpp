@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int most_files = 20000, deepest_folder = 16;
+constexpr int max_files = 20000, deepest_folder = 16;
 constexpr std::size_t longest_name = 200;
 
 }  // namespace
@@ -75,9 +75,9 @@ fs::path Uploads::place(int set, std::string_view name, std::uint64_t bytes) {
     throw Error("upload: " + to.folder->path().parent_path().string() +
                 " has not enough space; set TMPDIR to a folder that has");
   }
-  if (++to.files > most_files) {
+  if (++to.files > max_files) {
     throw Error(fmt::format("upload: there are more than {} files; choose their folder instead",
-                            most_files));
+                            max_files));
   }
   fs::create_directories(path.parent_path(), failure);
   if (failure || fs::exists(fs::symlink_status(path))) {

@@ -8,7 +8,7 @@
 
 namespace pellucid {
 
-class KeptFrames;
+class SetupCache;
 
 /// A pixel of a region's frame, and how many times the scene's tolerance it may be off by.
 struct PixelRequest {
@@ -91,7 +91,7 @@ class Renderer {
   void clear();
 
  private:
-  std::shared_ptr<KeptFrames> kept_;
+  std::shared_ptr<SetupCache> kept_;
 };
 
 }  // namespace pellucid

@@ -11,7 +11,7 @@
 namespace pellucid {
 
 /// Hits of a mesh's boundary that a ray has room for; with more it is left to the CPU.
-inline constexpr int most_device_hits = 64;
+inline constexpr int max_device_hits = 64;
 
 /// Fraction of a ray's tolerance for extinction that blocks and layers leave out:
 /// ray_left_out_share of the CPU's renderer.
@@ -27,11 +27,11 @@ PELLUCID_HD inline RayTolerance without_left_out(RayTolerance wanted) noexcept {
 
 /// Finds the hits of a mesh's boundary, in ascending order. Returns false if there is no room.
 PELLUCID_HD inline bool find_hits(const Tetrahedra& mesh, const Ray<double>& world,
-                                  MeshHit (&hits)[most_device_hits], MeshRay& ray) noexcept {
+                                  MeshHit (&hits)[max_device_hits], MeshRay& ray) noexcept {
   ray.view = make_ray_frame(world, mesh.center(), mesh.coordinate_bound);
   int count = 0;
   for_each_boundary_hit(mesh, world, ray.view, [&](const MeshHit& hit) noexcept {
-    if (count < most_device_hits) {
+    if (count < max_device_hits) {
       int i = count;
       for (; i > 0 && hit < hits[i - 1]; --i) hits[i] = hits[i - 1];
       hits[i] = hit;
@@ -39,8 +39,8 @@ PELLUCID_HD inline bool find_hits(const Tetrahedra& mesh, const Ray<double>& wor
     ++count;
   });
   ray.hits = hits;
-  ray.count = min(count, most_device_hits);
-  return count <= most_device_hits;
+  ray.count = min(count, max_device_hits);
+  return count <= max_device_hits;
 }
 
 /// Integrates a ray through a mesh by integrate(MeshRay), and finds its depth by find(MeshRay,
@@ -48,7 +48,7 @@ PELLUCID_HD inline bool find_hits(const Tetrahedra& mesh, const Ray<double>& wor
 template <class Integrate, class Find>
 PELLUCID_HD RayResult trace_mesh(const DeviceScene& scene, const Ray<double>& world,
                                  const Integrate& integrate, const Find& find) noexcept {
-  MeshHit hits[most_device_hits];
+  MeshHit hits[max_device_hits];
   MeshRay ray;
   if (!find_hits(scene.mesh, world, hits, ray)) return left_ray_result();
   RayResult result = integrate(ray);

@@ -63,9 +63,9 @@ struct PellucidLayerRow {
     cell,
     run  ///< of cells, through which the ray is to be followed
   };
-  static constexpr int most_lanes = 16;
+  static constexpr int max_lanes = 16;
   static constexpr int of_a_ray = 16;  ///< rows, one after the other, and then the first again
-  static constexpr int most_layers = 8, most_marks = 16;
+  static constexpr int max_layers = 8, most_marks = 16;
   /// Returns how many numbers PellucidLayeredJob::curves has of a row: the Bernstein coefficients
   /// of each variable, and then what each may be off by, filled up to records of four.
   static constexpr int curve_fields(int variables) {
@@ -76,7 +76,7 @@ struct PellucidLayerRow {
 /// Rays in a grid, one in each lane, their parameter the world arc length. Planes of the grid are
 /// at these places; null: in plane coordinates (PacketGrid).
 struct PellucidGridRays {
-  double origin[3][PellucidLayerRow::most_lanes], direction[3][PellucidLayerRow::most_lanes];
+  double origin[3][PellucidLayerRow::max_lanes], direction[3][PellucidLayerRow::max_lanes];
   const double* plane[3];
 };
 
@@ -104,24 +104,24 @@ struct PellucidLayeredJob {
 
   // Of the lanes' rays.
   std::int32_t count;
-  float tolerance[PellucidLayerRow::most_lanes], length[PellucidLayerRow::most_lanes];
-  float to_eye[3][PellucidLayerRow::most_lanes];
-  const float* head;             ///< [lane][row]
-  const float* part;             ///< [layer][lane][row]
-  const PellucidGridRays* walk;  ///< of each layer, where parts are runs of cells
-  const double* range;           ///< [lane][row], of such parts: begin and end
-  std::int32_t next[PellucidLayerRow::most_lanes];  ///< the first row that is not taken; in and out
-  std::int32_t end[PellucidLayerRow::most_lanes];   ///< behind the last one that is there
-  std::int32_t done[PellucidLayerRow::most_lanes];  ///< out: nothing more matters
+  float tolerance[PellucidLayerRow::max_lanes], length[PellucidLayerRow::max_lanes];
+  float to_eye[3][PellucidLayerRow::max_lanes];
+  const float* head;                               ///< [lane][row]
+  const float* part;                               ///< [layer][lane][row]
+  const PellucidGridRays* walk;                    ///< of each layer, where parts are runs of cells
+  const double* range;                             ///< [lane][row], of such parts: begin and end
+  std::int32_t next[PellucidLayerRow::max_lanes];  ///< the first row that is not taken; in and out
+  std::int32_t end[PellucidLayerRow::max_lanes];   ///< behind the last one that is there
+  std::int32_t done[PellucidLayerRow::max_lanes];  ///< out: nothing more matters
 
   // Where a row is not for packets, or some of it: the caller integrates the share [from, to] of
   // the row before `next`.
-  std::int32_t waits[PellucidLayerRow::most_lanes];     ///< out
-  std::int32_t gives_up[PellucidLayerRow::most_lanes];  ///< in: such a ray is not followed further
-  double from[PellucidLayerRow::most_lanes], to[PellucidLayerRow::most_lanes];
-  double allowance_flat[PellucidLayerRow::most_lanes];
-  double allowance_per_opacity[PellucidLayerRow::most_lanes];
-  PellucidCellResult handed[PellucidLayerRow::most_lanes];  ///< in, of lanes that wait
+  std::int32_t waits[PellucidLayerRow::max_lanes];     ///< out
+  std::int32_t gives_up[PellucidLayerRow::max_lanes];  ///< in: such a ray is not followed further
+  double from[PellucidLayerRow::max_lanes], to[PellucidLayerRow::max_lanes];
+  double allowance_flat[PellucidLayerRow::max_lanes];
+  double allowance_per_opacity[PellucidLayerRow::max_lanes];
+  PellucidCellResult handed[PellucidLayerRow::max_lanes];  ///< in, of lanes that wait
 
   PellucidRayResult* results;  ///< of `finish`
 };

@@ -9,10 +9,10 @@ namespace pellucid {
 /// The light of one variable on a grid, and its gradient opacity, as packets see them. Plain
 /// numbers, the same for every instruction set.
 struct PacketLight {
-  static constexpr int most_lights = 8;
+  static constexpr int max_lights = 8;
 
   Reflection<float> reflection;
-  LightSource<float> light[most_lights];  ///< positions from the middle of the grid
+  LightSource<float> light[max_lights];  ///< positions from the middle of the grid
   int lights = 0;
   int points = 0;      ///< of these, point lights
   float farthest = 0;  ///< of the grid or a light from that middle, world length

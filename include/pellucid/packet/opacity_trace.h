@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/packet_fold.h"
+#include "pellucid/packet/lane_compositor.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
@@ -26,7 +26,7 @@ class OpacityTrace {
   }
 
   /// Segments of the lanes' rays were added and paid for.
-  void note(M lanes, const PacketFold<N>& fold) noexcept {
+  void note(M lanes, const LaneCompositor<N>& fold) noexcept {
     if (!asked_) return;
     float left_of_ray[N], opacity[N];
     fold.budget.remaining_length().store(left_of_ray);

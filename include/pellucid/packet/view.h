@@ -14,7 +14,7 @@
           f(PellucidLaneMixture, LaneMixture) f(PellucidLight, PacketLight)             \
               f(PellucidMeshFields, MeshFields) f(PellucidMeshPoints, MeshPoint)        \
                   f(PellucidMultichannelGrid, MultichannelGrid)                         \
-                      f(PellucidNearMixture, NearMixture)                               \
+                      f(PellucidNearMixture, CulledMixture)                             \
                           f(PellucidPreintegrated, PreintegratedTable)                  \
                               f(PellucidPrimitiveSets, PrimitiveSet)                    \
                                   f(PellucidSampledMultivariate, SampledMultivariate)   \

@@ -64,17 +64,17 @@ PELLUCID_HD void integrate_blocks(const ClassifiedBlocks& blocks, const Ray<doub
   const BlockRecords& records = blocks.records;
   StrideMarch march(ray_grid.direction, records.least_width, records.mean_width);
   Interval<double> smooth{inside.begin, inside.begin};
-  BlockBends bends{};
+  CurvatureBounds curvature{};
   const auto finish = [&] {
-    if (smooth.begin < smooth.end) march.run(integrator, smooth, bends, each_cell);
+    if (smooth.begin < smooth.end) march.run(integrator, smooth, curvature, each_cell);
   };
   for_each_block(blocks, ray_grid, inside, [&](const BlockStep& step) {
     const BlockClass& block = blocks.classes[step.block];
     const BlockRange range = records.range(step.block);
-    const BlockBends own = records.bends(step.block);
+    const CurvatureBounds own = records.curvature(step.block);
     if (march.resolves_positions(step.t_end) &&
         integrator.is_smooth(block, range, own, march.variation(own), march.shortest())) {
-      bends = smooth.begin < smooth.end ? join(bends, own) : own;
+      curvature = smooth.begin < smooth.end ? join(curvature, own) : own;
       smooth.end = step.t_end;
       if (smooth.end - smooth.begin > march.longest()) {
         finish();

@@ -87,7 +87,7 @@ class MultivariateRayIntegrator {
                                                    double position_error) noexcept {
     ++evaluations_;
     // The parts still to do, by their ends, the nearest last.
-    double ends[most_cuts + 1];
+    double ends[max_cuts + 1];
     int open = 1;
     ends[0] = 1;
     double begin = 0;
@@ -98,7 +98,7 @@ class MultivariateRayIntegrator {
           begin > 0 && end < 1 ? (end - begin) * position_error : position_error;
       const bool many = panels_ > stretch.most_panels(), proved = demand_.grade == Grade::proved;
       demand_.estimate_suffices = proved && many;
-      demand_.last_resort = open > most_cuts || !(end - begin > 1e-9) || (!proved && many) ||
+      demand_.last_resort = open > max_cuts || !(end - begin > 1e-9) || (!proved && many) ||
                             panels_ / 2 > stretch.most_panels();
       const PanelSegment<double> panel = integrate(stretch, begin, end, left_out);
       if (!panel.done) {
@@ -157,7 +157,7 @@ class MultivariateRayIntegrator {
   }
 
  private:
-  static constexpr int most_cuts = 60;
+  static constexpr int max_cuts = 60;
   /// Tolerance that is proved of a ray where its own cannot be.
   static constexpr double coarse_tolerance = 1e-3;
 

@@ -7,8 +7,8 @@
 #include "pellucid/render/integrate_cell.h"
 #include "pellucid/segment/compositor.h"
 #include "pellucid/segment/stride.h"
-#include "pellucid/traverse/block_bends.h"
 #include "pellucid/traverse/block_walk.h"
+#include "pellucid/traverse/curvature_bounds.h"
 #include "pellucid/traverse/spans.h"
 
 namespace pellucid {
@@ -87,7 +87,8 @@ class RayIntegrator {
   /// for waves of seven cells and longer, but not for noise, whose second differences three samples
   /// do not show.
   PELLUCID_HD bool is_smooth(const BlockClass& block, const BlockRange& range,
-                             const BlockBends& bends, double variation, double length) noexcept {
+                             const CurvatureBounds& curvature, double variation,
+                             double length) noexcept {
     if (!block.absorbs_in_cells()) return false;
     const double deviation = 0.5 * bend_deviation(variation, 0.5 * length);
     const double bound = length * deviation * static_cast<double>(from_upper_half(block.roughness));
@@ -95,7 +96,7 @@ class RayIntegrator {
     if (wanted_.grade == Grade::estimated) {
       double jump = 0;
       for (int a = 0; a < 3; ++a) {
-        jump += abs(ray_.direction[a]) * static_cast<double>(bends.bend[a]);
+        jump += abs(ray_.direction[a]) * static_cast<double>(curvature.second_difference[a]);
       }
       if (2 * jump <= derivative_oscillation(range, ray_.direction)) guard = stride_guard<double>;
     }

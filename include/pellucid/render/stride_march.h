@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pellucid/render/ray_integrator.h"
-#include "pellucid/traverse/block_bends.h"
+#include "pellucid/traverse/curvature_bounds.h"
 
 namespace pellucid {
 
@@ -36,13 +36,13 @@ class StrideMarch {
   /// Returns the largest length that is worth collecting before run().
   PELLUCID_HD double longest() const noexcept { return 16 * shortest_; }
   /// Returns the variation of the data's derivative on half of the shortest stride.
-  PELLUCID_HD double variation(const BlockBends& bends) const noexcept {
-    return derivative_variation(bends, direction_, least_width_, 0.5 * shortest_);
+  PELLUCID_HD double variation(const CurvatureBounds& curvature) const noexcept {
+    return derivative_variation(curvature, direction_, least_width_, 0.5 * shortest_);
   }
 
   /// Integrates from t.begin to t.end; each_cell(Interval) integrates an interval cell by cell.
   template <class Integrator, class EachCell>
-  PELLUCID_HD void run(Integrator& integrator, Interval<double> t, const BlockBends& bends,
+  PELLUCID_HD void run(Integrator& integrator, Interval<double> t, const CurvatureBounds& curvature,
                        EachCell&& each_cell) noexcept {
     double here = t.begin, value = 0;
     bool known = false;
@@ -56,7 +56,8 @@ class StrideMarch {
       }
       if (!known) value = integrator.sample(here);
       known = true;
-      const double variation = derivative_variation(bends, direction_, least_width_, 0.5 * length);
+      const double variation =
+          derivative_variation(curvature, direction_, least_width_, 0.5 * length);
       double back;
       if (integrator.try_stride(here, length, variation, value, back)) {
         here = length == left ? t.end : here + length;

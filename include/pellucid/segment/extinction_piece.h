@@ -183,10 +183,11 @@ in_float_t<F> range_of(const PieceDepth<F>& piece) noexcept {
 template <class F>
 in_float_t<F> color_kink_error(const BinnedTransfer& transfer, F lower, F upper) noexcept {
   using Single = in_float_t<F>;
-  if (!transfer.bends) return Single(0);
+  if (!transfer.has_color_breakpoints) return Single(0);
   // The bins' bounds hold for rounded values; their difference does not.
-  const Single bend = color_slope_change(transfer, convert<float>(lower), convert<float>(upper));
-  return Single(0.25f) * (bend * convert<float>(max(upper - lower, F(0))));
+  const Single slope_change =
+      color_slope_change(transfer, convert<float>(lower), convert<float>(upper));
+  return Single(0.25f) * (slope_change * convert<float>(max(upper - lower, F(0))));
 }
 
 /// Bounds on the differences between the colors of a piece.
@@ -289,7 +290,7 @@ BoundedSegment<in_float_t<F>> panel_piece(const PieceDepth<F>& piece, const Piec
     return color_at(transfer, clamp(value, piece.color_lower, piece.color_upper), wanted, known);
   };
   Rgb<Single> color{};
-  if (proved || !transfer.bends) {
+  if (proved || !transfer.has_color_breakpoints) {
     const PanelSums<Single> sums =
         cubic_panel_sums<piece_nodes>(panel.rise, panel.rate_first, panel.rate_by_rise, middle);
     const Single off = mean_of(sums.share, proved ? found.opacity : sums.weight);

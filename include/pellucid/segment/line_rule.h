@@ -162,8 +162,8 @@ PELLUCID_HD bool select_line_rule(const CubicBernstein<T>& data, T length,
     result = detail::line_mean_result(line, antiderivative.rounding);
     if (fits(result)) return true;
   }
-  constexpr int most_intervals = 16;
-  if (line.mean.last - line.mean.first >= most_intervals) return false;
+  constexpr int max_intervals = 16;
+  if (line.mean.last - line.mean.first >= max_intervals) return false;
   result = detail::line_emission_result(line, table);
   return fits(result);
 }

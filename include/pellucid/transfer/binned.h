@@ -46,7 +46,7 @@ struct BinnedTransfer {
   float origin = 0, bins_per_value = 0;
   std::int32_t bins = 0;
   float color_slope_change_rounding = 0;  ///< of a difference of two such sums
-  bool bends = false;                     ///< whether any of them is not 0
+  bool has_color_breakpoints = false;     ///< whether any of them is not 0
   /// True if `marks` says more than support_min and support_max: there are jumps or gaps.
   bool has_marks = false;
   float support_min = 0, support_max = 0;  ///< nothing absorbs outside; min > max: nothing absorbs

@@ -45,7 +45,7 @@ static_assert(sizeof(BlockClass) == 4);
 /// for what one bend can be: over four blocks each way, and over the range of each, neither the
 /// data nor the transfer function bend much more in one place than they do all over.
 struct SmoothBlocks {
-  float bend[3] = {};  ///< as in BlockBends
+  float second_difference[3] = {};  ///< as in CurvatureBounds
   /// largest color · slope + color slope (see BlockClass), the largest of the blocks.
   double roughness = 0;
   /// Cells; the longest of any block. 0: none is smooth.
@@ -60,7 +60,7 @@ struct SmoothBlocks {
 };
 /// Cells; half the width of a block.
 inline constexpr double longest_sampled_step = 4;
-inline constexpr int most_sampled_step_levels = 11;
+inline constexpr int max_sampled_step_levels = 11;
 /// Returns the length of a level's steps, of that of the longest.
 constexpr float sampled_step_share(int level) noexcept {
   return (level % 2 == 0 ? 1 : 0.7071068f) / static_cast<float>(1 << level / 2);

@@ -23,11 +23,12 @@ enum class BlockVacuum : std::uint8_t { none, some, all };
 ///   bytes 16 … 21  oscillation   along x, y, z
 ///   bytes 22, 23   flags
 ///
-/// bend, twist (BlockBends) and oscillation (BlockRange) are the upper halves of floats, rounded
-/// upward: shifted left by 16 bits they are the bits of a float that is a bound, infinite or >= 0.
+/// bend, twist (CurvatureBounds) and oscillation (BlockRange) are the upper halves of floats,
+/// rounded upward: shifted left by 16 bits they are the bits of a float that is a bound, infinite
+/// or >= 0.
 struct alignas(8) BlockRecord {
   std::uint16_t lower, upper;
-  std::uint16_t bend[3], twist[3];
+  std::uint16_t second_difference[3], twist[3];
   std::uint16_t oscillation[3];
   std::uint16_t flags;  ///< bits 0 and 1: BlockVacuum; bit 2: constant
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "pellucid/field/structured_grid.h"
-#include "pellucid/traverse/block_bends.h"
 #include "pellucid/traverse/block_record.h"
+#include "pellucid/traverse/curvature_bounds.h"
 
 namespace pellucid {
 
@@ -64,14 +64,14 @@ struct BlockRecords {
             r.vacuum(),
             r.constant()};
   }
-  PELLUCID_HD BlockBends bends(int block) const noexcept {
+  PELLUCID_HD CurvatureBounds curvature(int block) const noexcept {
     const BlockRecord& r = record[block];
-    BlockBends bends;
+    CurvatureBounds curvature;
     for (int a = 0; a < 3; ++a) {
-      bends.bend[a] = from_upper_half(r.bend[a]);
-      bends.twist[a] = from_upper_half(r.twist[a]);
+      curvature.second_difference[a] = from_upper_half(r.second_difference[a]);
+      curvature.twist[a] = from_upper_half(r.twist[a]);
     }
-    return bends;
+    return curvature;
   }
 };
 

@@ -16,10 +16,11 @@ namespace pellucid {
 /// at most; the two others are continuous there, so that their ranges in both blocks have a value
 /// in common. Hence over the whole way the derivative by axis a is within a range of (m + 1)
 /// oscillation_a, and bend_a more if the way ends in another block of that axis. Of a part of the
-/// way bend and twist alone say how much it may vary, too: derivative_variation() (block_bends.h).
+/// way bend and twist alone say how much it may vary, too: derivative_variation()
+/// (curvature_bounds.h).
 struct alignas(16) BlockVariation {
   std::uint16_t oscillation[3];
-  std::uint16_t bend[3];
+  std::uint16_t second_difference[3];
   std::uint16_t twist;  ///< the largest of the three
   std::uint16_t unused;
 };

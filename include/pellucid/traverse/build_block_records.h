@@ -89,7 +89,7 @@ class BlockRecorder {
   /// Contents of a record, as numbers.
   struct Found {
     double lower = 0, upper = 0;
-    double oscillation[3] = {0, 0, 0}, bend[3] = {0, 0, 0}, twist[3] = {0, 0, 0};
+    double oscillation[3] = {0, 0, 0}, second_difference[3] = {0, 0, 0}, twist[3] = {0, 0, 0};
     BlockVacuum vacuum = BlockVacuum::none;
     bool constant = false;
   };
@@ -169,10 +169,11 @@ class BlockRecorder {
     });
     found.oscillation[a] = static_cast<double>(slope.upper) - static_cast<double>(slope.lower);
     count[a] = planes_[a];
-    found.bend[a] = magnitude(extent(count[0], count[1], count[2], [](const Number* v) {
-      const Lanes middle = Lanes::load(v + stride(a));
-      return (Lanes::load(v + 2 * stride(a)) - middle) - (middle - Lanes::load(v));
-    }));
+    found.second_difference[a] =
+        magnitude(extent(count[0], count[1], count[2], [](const Number* v) {
+          const Lanes middle = Lanes::load(v + stride(a));
+          return (Lanes::load(v + 2 * stride(a)) - middle) - (middle - Lanes::load(v));
+        }));
     count[a] = cells_[a] + 1;
     count[b] = cells_[b];
     count[c] = cells_[c];
@@ -189,7 +190,7 @@ class BlockRecorder {
     const double slack = std::is_integral_v<Value> ? 0 : 32 * rounding_unit<double> * largest;
     for (int a = 0; a < 3; ++a) {
       if (found.oscillation[a] > 0) found.oscillation[a] += slack;
-      found.bend[a] += slack;
+      found.second_difference[a] += slack;
       found.twist[a] += slack;
     }
   }
@@ -223,7 +224,7 @@ class BlockRecorder {
       const int b = (a + 1) % 3, c = (a + 2) % 3;
       const int s = stride(a), p = stride(b), q = stride(c);
       double lower = std::numeric_limits<double>::infinity(), upper = -lower;
-      double bend = 0, twist = 0;
+      double second_difference = 0, twist = 0;
       for_each_corner([&](const Number* v, const int(&n)[3]) noexcept {
         const bool in_cell[3] = {n[0] < cells_[0], n[1] < cells_[1], n[2] < cells_[2]};
         if (in_cell[a]) {
@@ -233,7 +234,7 @@ class BlockRecorder {
           if (n[a] < planes_[a]) {
             const double ahead =
                 derivative(static_cast<Number>(v[2 * s] - v[s]), inverse[a][n[a] + 1]);
-            bend = max(abs(ahead - behind), bend);
+            second_difference = max(abs(ahead - behind), second_difference);
           }
         }
         if (in_cell[b] && in_cell[c]) {
@@ -242,7 +243,7 @@ class BlockRecorder {
         }
       });
       found.oscillation[a] = oscillation(lower, upper, slack * sum[a] + least);
-      found.bend[a] = bend + (slack * sum[a] + least);
+      found.second_difference[a] = second_difference + (slack * sum[a] + least);
       found.twist[a] = twist + (slack * (sum[b] * sum[c]) + least);
     }
   }
@@ -292,7 +293,7 @@ class BlockRecorder {
     Found found;
     found.vacuum = values.empty() ? BlockVacuum::all : BlockVacuum::some;
     for (int a = 0; a < 3; ++a) {
-      found.bend[a] = found.twist[a] = infinity;
+      found.second_difference[a] = found.twist[a] = infinity;
       if (values.empty()) continue;
       found.lower = static_cast<double>(values.lower);
       found.upper = static_cast<double>(values.upper);
@@ -310,7 +311,7 @@ class BlockRecorder {
       record.upper = code_above(code_, found.upper);
     }
     for (int a = 0; a < 3; ++a) {
-      record.bend[a] = upper_half_above(found.bend[a]);
+      record.second_difference[a] = upper_half_above(found.second_difference[a]);
       record.twist[a] = upper_half_above(found.twist[a]);
       record.oscillation[a] = upper_half_above(found.oscillation[a]);
     }

@@ -58,7 +58,7 @@ std::vector<Tile> make_launches(const Scene& scene, const RenderOptions& options
 /// A frame on its way.
 class DeviceFrame {
  public:
-  DeviceFrame(const Frame& frame, const RenderOptions& options, KeptDevice& device,
+  DeviceFrame(const Frame& frame, const RenderOptions& options, CachedDevice& device,
               const ImageView& image, RenderReport& report)
       : frame_(frame),
         options_(options),
@@ -161,7 +161,7 @@ class DeviceFrame {
     std::mutex mutex;
     TileSpeed speed;
     const auto width = static_cast<std::uint32_t>(frame_.scene.size.width);
-    take_in_turn(count, report_.threads, [&](std::size_t i) {
+    parallel_for_ordered(count, report_.threads, [&](std::size_t i) {
       const Tile pixel{static_cast<int>(pixels[i] % width), static_cast<int>(pixels[i] / width), 1,
                        1};
       RenderReport part;
@@ -177,7 +177,7 @@ class DeviceFrame {
 
   const Frame& frame_;
   const RenderOptions& options_;
-  KeptDevice& device_;
+  CachedDevice& device_;
   const ImageView view_;
   RenderReport& report_;
   const ParallelFor parallel_;
@@ -197,7 +197,7 @@ std::string reason_for_cpu(const Frame& frame, const RenderOptions& options) {
   return DeviceLayer::cannot_follow(layer, frame.scene.integration);
 }
 
-void render_on_device(const Frame& frame, const RenderOptions& options, KeptDevice& device,
+void render_on_device(const Frame& frame, const RenderOptions& options, CachedDevice& device,
                       const ImageView& image, RenderReport& report) {
   const std::lock_guard lock(device.in_use);
   DeviceFrame(frame, options, device, image, report).render(image);

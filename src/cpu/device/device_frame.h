@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "device_cache.h"
 #include "frame/frame.h"
-#include "kept_devices.h"
 
 namespace pellucid {
 
@@ -14,7 +14,7 @@ std::string reason_for_cpu(const Frame& frame, const RenderOptions& options);
 /// Renders a frame, for which there is no reason_for_cpu(), on a device: its pixels into the image,
 /// what it did into the report. Pixels that the device leaves go to the CPU. Throws Cancelled, and
 /// Error if the device fails.
-void render_on_device(const Frame& frame, const RenderOptions& options, KeptDevice& device,
+void render_on_device(const Frame& frame, const RenderOptions& options, CachedDevice& device,
                       const ImageView& image, RenderReport& report);
 
 }  // namespace pellucid

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "layers/layer_look.h"
+#include "layers/layer_appearance.h"
 #include "mesh/mesh_field_storage.h"
 #include "pellucid/cuda/device_scene.h"
 #include "pellucid/scene/internal/block_classes_storage.h"
@@ -42,7 +42,7 @@ class DeviceLayer {
   DeviceScene scene_;
   std::optional<TransferTablesStorage> transfer_;
   BlockClassesStorage classes_;
-  std::optional<LayerLook> look_;
+  std::optional<LayerAppearance> look_;
   std::vector<LightSource<double>> lights_;
   MultivariateBlocksStorage channel_blocks_;
   std::optional<MeshFieldStorage> fields_;

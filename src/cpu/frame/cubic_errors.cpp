@@ -80,7 +80,7 @@ CubicErrors::CubicErrors(const ImageView& image, ImageSize size, int stride, int
   constexpr std::size_t group = 16;
   const std::size_t groups_of_rows = (rows_ + group - 1) / group,
                     groups_of_columns = (columns_ + group - 1) / group;
-  take_in_turn(groups_of_rows + groups_of_columns, threads, [&](std::size_t n) {
+  parallel_for_ordered(groups_of_rows + groups_of_columns, threads, [&](std::size_t n) {
     if (n < groups_of_rows) {
       for (std::size_t j = n * group; j < std::min((n + 1) * group, rows_); ++j) {
         find_line(image.pixels + j * apart * image.width, apart, columns_,

@@ -38,7 +38,7 @@ std::vector<double> find_depths(const Scene& scene, const RenderOptions& options
   const Frame frame(scene, options, threads, setups);
   std::vector<double> found(requests.size(), std::numeric_limits<double>::infinity());
   constexpr std::size_t at_once = 64;
-  take_in_turn((requests.size() + at_once - 1) / at_once, threads, [&](std::size_t group) {
+  parallel_for_ordered((requests.size() + at_once - 1) / at_once, threads, [&](std::size_t group) {
     std::vector<RayPart> parts;
     std::vector<double> depths;
     std::vector<std::size_t> of;

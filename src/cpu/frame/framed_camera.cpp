@@ -90,8 +90,8 @@ ImageSize draft_size(ImageSize size, int smaller_side) {
 
 Camera framed_camera(const Camera& start, ImageSize size, const DraftRenderer& draft) {
   Camera camera = start;
-  constexpr int most_drafts = 10;
-  for (int i = 0; i < most_drafts; ++i) {
+  constexpr int max_drafts = 10;
+  for (int i = 0; i < max_drafts; ++i) {
     const ImageSize small = draft_size(size, i < 2 ? 64 : 96);
     const CameraFrame<double> frame = make_camera_frame(camera, small);
     const Image image = draft(camera, small);

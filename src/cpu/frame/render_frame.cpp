@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "between_pixels.h"
 #include "device/device_frame.h"
 #include "frame.h"
 #include "pellucid/scene/error.h"
+#include "pixel_interpolator.h"
 #include "progress.h"
 #include "render_tile.h"
 #include "threads.h"
@@ -65,9 +65,9 @@ void render_tiles(const Frame& frame, const RenderOptions& options, const ImageV
   std::mutex report_mutex;
   Progress progress(options, image, tiles);
   TileSpeed speed;
-  const std::unique_ptr<BetweenPixels> between = BetweenPixels::make(frame, image);
+  const std::unique_ptr<PixelInterpolator> between = PixelInterpolator::make(frame, image);
   const auto render_level = [&](std::span<const Tile> some, int level, const auto& finish) {
-    take_in_turn(some.size(), report.threads, [&](std::size_t i) {
+    parallel_for_ordered(some.size(), report.threads, [&](std::size_t i) {
       RenderReport part;
       const std::size_t pixels = render_tile(
           frame, some[i], {level, between.get(), options.monitor.stop, &speed}, image, part);
@@ -84,13 +84,13 @@ void render_tiles(const Frame& frame, const RenderOptions& options, const ImageV
   const auto finish_tile = [&](const Tile& tile, std::size_t pixels) {
     progress.finish_tile(tile, pixels);
   };
-  std::size_t told = 0;
+  std::size_t next_tile = 0;
   if (between) {
     for (int level = between->stride(); level > 1 && between->goes_on(); level /= 2) {
-      const std::span<const Tile> of_preview = tiles_of(tiles, told, level);
+      const std::span<const Tile> of_preview = tiles_of(tiles, next_tile, level);
       if (1 << options.monitor.preview >= level) {
         render_level(of_preview, level, finish_tile);
-        told += of_preview.size();
+        next_tile += of_preview.size();
       } else {
         render_level(make_lattice(frame.scene.size, level), level,
                      [&](const Tile&, std::size_t pixels) { progress.finish_pixels(pixels); });
@@ -98,7 +98,7 @@ void render_tiles(const Frame& frame, const RenderOptions& options, const ImageV
       between->finish_level(level, report.threads);
     }
   }
-  render_level(tiles_of(tiles, told, 1), 1, finish_tile);
+  render_level(tiles_of(tiles, next_tile, 1), 1, finish_tile);
   progress.finish();
   if (progress.cancelled()) throw Cancelled();
 }
@@ -127,14 +127,14 @@ Image make_image(ImageSize size, const FrameOutputs& outputs) {
 }
 
 RenderReport render_frame(const ImageView& image, const Scene& scene, const RenderOptions& options,
-                          int threads, LayerSetups& kept, KeptDevices& devices) {
+                          int threads, LayerSetups& kept, DeviceCache& devices) {
   RenderReport local;
   local.threads = threads;
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  const std::shared_ptr<KeptDevice> device =
+  const std::shared_ptr<CachedDevice> device =
       options.machine.device == Device::cpu ? nullptr : devices.find(options.machine.device);
   const Frame frame(scene, options, threads, kept);
   local.pixels = static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);

@@ -35,7 +35,7 @@ RenderResult render_pixels(const Scene& scene, const RenderOptions& options,
   std::atomic<bool> cancelled{false};
   TileSpeed speed;
   constexpr std::size_t at_once = 256;
-  take_in_turn((requests.size() + at_once - 1) / at_once, threads, [&](std::size_t group) {
+  parallel_for_ordered((requests.size() + at_once - 1) / at_once, threads, [&](std::size_t group) {
     const std::size_t first = group * at_once, end = std::min(first + at_once, requests.size());
     std::vector<RayPart> rays;
     for (std::size_t i = first; i < end; ++i) {

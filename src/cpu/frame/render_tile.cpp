@@ -98,7 +98,7 @@ Interval<double> range_of_rays(const Scene& scene, std::size_t pixel) {
 
 std::vector<RayResult> trace_region(const Frame& frame, const std::vector<RayPart>& rays,
                                     const std::function<double(std::size_t)>& allowance_of,
-                                    double share_of_rays, const TileTask& task) {
+                                    double traced_tolerance_fraction, const TileTask& task) {
   struct Group {
     double allowance;
     std::vector<RayPart> rays{};
@@ -119,8 +119,8 @@ std::vector<RayResult> trace_region(const Frame& frame, const std::vector<RayPar
   }
   std::vector<RayResult> results(rays.size(), nothing_of_region());
   for (const Group& group : groups) {
-    const std::vector<RayResult> found =
-        trace(frame, group.rays, {group.allowance, share_of_rays, task.stop}, task, nullptr);
+    const std::vector<RayResult> found = trace(
+        frame, group.rays, {group.allowance, traced_tolerance_fraction, task.stop}, task, nullptr);
     for (std::size_t i = 0; i < found.size(); ++i) results[group.of[i]] = found[i];
   }
   return results;
@@ -129,7 +129,7 @@ std::vector<RayResult> trace_region(const Frame& frame, const std::vector<RayPar
 std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& task,
                         const ImageView& image, RenderReport& report) {
   const int level = task.level;
-  BetweenPixels* const between = task.between;
+  PixelInterpolator* const between = task.between;
   const int samples = frame.scene.samples, rays_of_pixel = samples * samples;
   const auto finish = [&](const Place& place, const RayResult& result) {
     store_pixel(frame, result, image.index(place.column, place.row), image, report);
@@ -170,14 +170,15 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& ta
     }
   }
   std::vector<double> values;  // of pixels with one ray
-  const double share_of_rays = between != nullptr ? between->share_of_rays(level) : 1;
+  const double traced_tolerance_fraction =
+      between != nullptr ? between->traced_tolerance_fraction(level) : 1;
   const auto allowance = [&](std::size_t ray) {
     const double most = frame.region->allowance ? frame.region->allowance(rays[ray].ray) : 1;
     return between != nullptr ? std::min(most, 1.0) : most;
   };
   const std::vector<RayResult> results =
-      frame.region ? trace_region(frame, rays, allowance, share_of_rays, task)
-                   : trace(frame, rays, {1, share_of_rays, task.stop}, task,
+      frame.region ? trace_region(frame, rays, allowance, traced_tolerance_fraction, task)
+                   : trace(frame, rays, {1, traced_tolerance_fraction, task.stop}, task,
                            image.values != nullptr ? &values : nullptr);
   if (task.stop.stop_requested()) return 0;
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -8,9 +8,9 @@
 #include <stop_token>
 #include <vector>
 
-#include "between_pixels.h"
 #include "frame.h"
 #include "pixel.h"
+#include "pixel_interpolator.h"
 
 namespace pellucid {
 
@@ -33,9 +33,9 @@ class TileSpeed {
 
 /// Options of a tile.
 struct TileTask {
-  int level;               ///< of `between`, whose coarser levels are done
-  BetweenPixels* between;  ///< null: all pixels are traced
-  std::stop_token stop;    ///< once it is requested, what becomes of the tile does not matter
+  int level;                   ///< of `between`, whose coarser levels are done
+  PixelInterpolator* between;  ///< null: all pixels are traced
+  std::stop_token stop;        ///< once it is requested, what becomes of the tile does not matter
   TileSpeed* speed;
 };
 
@@ -46,7 +46,7 @@ Interval<double> range_of_rays(const Scene& scene, std::size_t pixel);
 /// times the tolerance; those that may be off by the same go together.
 std::vector<RayResult> trace_region(const Frame& frame, const std::vector<RayPart>& rays,
                                     const std::function<double(std::size_t)>& allowance,
-                                    double share_of_rays, const TileTask& task);
+                                    double traced_tolerance_fraction, const TileTask& task);
 
 /// Renders the pixels of the tile into the image, and adds them to the report. What a pixel becomes
 /// depends on nothing but the frame and its place: neither on the tile nor on the thread. Gives how

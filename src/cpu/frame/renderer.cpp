@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "device/kept_devices.h"
+#include "device/device_cache.h"
 #include "layers/layer_setups.h"
 #include "pellucid/scene/error.h"
 #include "render_frame.h"
@@ -35,15 +35,15 @@ void check_target(const ImageView& target, ImageSize size) {
 
 }  // namespace
 
-class KeptFrames {
+class SetupCache {
  public:
-  explicit KeptFrames(int of_frames) : threads(of_frames) {
+  explicit SetupCache(int of_frames) : threads(of_frames) {
     if (threads < 0) throw Error("threads: must not be negative; 0 takes one per core");
   }
 
   const int threads;
   LayerSetups setups;
-  KeptDevices devices;
+  DeviceCache devices;
 
   RenderResult render(const Scene& scene, const RenderOptions& options) {
     check_frame(scene, options);
@@ -69,7 +69,7 @@ class KeptFrames {
   }
 };
 
-Renderer::Renderer(int threads) : kept_(std::make_shared<KeptFrames>(threads)) {}
+Renderer::Renderer(int threads) : kept_(std::make_shared<SetupCache>(threads)) {}
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
@@ -96,7 +96,7 @@ void Renderer::clear() {
 
 /// The thread that renders, and what it tells.
 struct RunningFrame::Job {
-  Job(std::shared_ptr<KeptFrames> with, Scene of, RenderOptions how)
+  Job(std::shared_ptr<SetupCache> with, Scene of, RenderOptions how)
       : kept(std::move(with)),
         scene(std::move(of)),
         options(std::move(how)),
@@ -160,7 +160,7 @@ struct RunningFrame::Job {
     }
   }
 
-  const std::shared_ptr<KeptFrames> kept;
+  const std::shared_ptr<SetupCache> kept;
   const Scene scene;
   RenderOptions options;
   std::function<bool(double)> report_progress;

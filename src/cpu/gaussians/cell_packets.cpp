@@ -17,7 +17,7 @@ namespace {
 constexpr double left_out_share = 1.0 / 16;
 
 /// Below, what budgets in binary32 lose and what folding in double does would be most of it.
-constexpr double least_tolerance = 1e-11;
+constexpr double min_tolerance = 1e-11;
 
 GaussianPacketKernel kernel_for(InstructionSet set) {
   return PELLUCID_KERNEL_OF(set, pellucid_integrate_multivariate_cells);
@@ -25,8 +25,9 @@ GaussianPacketKernel kernel_for(InstructionSet set) {
 
 }  // namespace
 
-Movement movement_in_cells(const Channels& channels, const GaussianMixture<double>& mixture,
-                           const MultivariateBlocks& blocks) {
+GaussianVariation movement_in_cells(const Channels& channels,
+                                    const GaussianMixture<double>& mixture,
+                                    const MultivariateBlocks& blocks) {
   const auto count = static_cast<std::size_t>(channels.count());
   std::vector<BlockRecords> records;
   for (const Channel& channel : channels) records.push_back(channel.volume->block_records());
@@ -36,36 +37,37 @@ Movement movement_in_cells(const Channels& channels, const GaussianMixture<doubl
       squared_norm.push_back(std::pow(column_norm(mixture.primitive[i], c), 2));
     }
   }
-  constexpr int most_blocks = 4096;
-  const int stride = (blocks.records.count() + most_blocks - 1) / most_blocks;
-  Movement sum;
+  constexpr int max_blocks = 4096;
+  const int stride = (blocks.records.count() + max_blocks - 1) / max_blocks;
+  GaussianVariation sum;
   int found = 0;
   for (int block = 0; block < blocks.records.count(); block += stride) {
     if (blocks.classes[block].kind == BlockKind::skip) continue;
-    double squared_range[max_channels] = {}, squared_bend[max_channels] = {};
+    double squared_range[max_channels] = {}, squared_second_difference[max_channels] = {};
     bool vacuum = false;
     for (std::size_t c = 0; c < count; ++c) {
       const BlockRange range = records[c].range(block);
       vacuum = vacuum || range.vacuum != BlockVacuum::none;
       squared_range[c] = std::pow(range.max - range.min, 2);
-      for (const float bend : records[c].bends(block).bend) {
-        squared_bend[c] += double{bend} * double{bend};
+      for (const float second_difference : records[c].curvature(block).second_difference) {
+        squared_second_difference[c] += double{second_difference} * double{second_difference};
       }
     }
     if (vacuum) continue;
-    double most = 0, bend = 0;
+    double most = 0, second_difference = 0;
     for (int i = 0; i < mixture.count; ++i) {
       if (!blocks.primitives[block].contains(i)) continue;
       const double* of = &squared_norm[static_cast<std::size_t>(i) * count];
       most = std::max(most, std::inner_product(of, of + count, squared_range, 0.0));
-      bend = std::max(bend, std::inner_product(of, of + count, squared_bend, 0.0));
+      second_difference = std::max(
+          second_difference, std::inner_product(of, of + count, squared_second_difference, 0.0));
     }
     sum.in_cell += std::sqrt(most) / block_width;
-    sum.bend += std::sqrt(bend);
+    sum.second_difference += std::sqrt(second_difference);
     ++found;
   }
   if (found == 0) return {};
-  return {sum.in_cell / found, sum.bend / found};
+  return {sum.in_cell / found, sum.second_difference / found};
 }
 
 std::unique_ptr<const CellPackets> CellPackets::make(
@@ -75,7 +77,7 @@ std::unique_ptr<const CellPackets> CellPackets::make(
   const GaussianPacketKernel kernel = kernel_for(instruction_set);
   const double largest_extinction = transfer_function.largest_extinction();
   if (kernel == nullptr || !suits_packets(channels, largest_extinction) ||
-      !(wanted.tolerance >= least_tolerance)) {
+      !(wanted.tolerance >= min_tolerance)) {
     return nullptr;
   }
   std::unique_ptr<CellPackets> packets(new CellPackets());

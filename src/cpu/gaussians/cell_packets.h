@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "culled_mixture_storage.h"
 #include "gaussian_packet_job.h"
-#include "near_mixture_storage.h"
 #include "pellucid/render/integrate_cell.h"
 #include "pellucid/scene/multivariate_transfer_function.h"
 #include "pellucid/simd/instruction_set.h"
@@ -15,11 +15,12 @@ namespace pellucid {
 /// Variation of K (v - c) in a cell: how far it moves, and how much its slope changes from cell to
 /// cell; the mean over blocks in which a primitive may matter, spread over all, of the one that
 /// moves most. It serves to choose the faster way, and nothing else.
-struct Movement {
-  double in_cell = 0, bend = 0;
+struct GaussianVariation {
+  double in_cell = 0, second_difference = 0;
 };
-Movement movement_in_cells(const Channels& channels, const GaussianMixture<double>& mixture,
-                           const MultivariateBlocks& blocks);
+GaussianVariation movement_in_cells(const Channels& channels,
+                                    const GaussianMixture<double>& mixture,
+                                    const MultivariateBlocks& blocks);
 
 /// Integrates rays through several channels in packets, cell by cell, in the machine's best
 /// instruction set.

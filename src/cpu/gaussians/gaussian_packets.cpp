@@ -15,7 +15,7 @@ namespace {
 
 /// Below 1e-5 binary32 cannot keep most rays' tolerance; some of what was asked for is spent on
 /// what blocks leave out.
-constexpr double least_tolerance = 0.95e-5;
+constexpr double min_tolerance = 0.95e-5;
 /// Largest shift of the data by rounding, in widths.
 constexpr double farthest_rounding = 1e-2;
 /// Error of K (v - c) where it matters, in u of binary32 of the primitive's reach, besides that of
@@ -83,10 +83,10 @@ std::unique_ptr<const GaussianPackets> GaussianPackets::make(
   const GaussianPacketKernel kernel = kernel_for(instruction_set);
   const double largest_extinction = transfer_function.largest_extinction();
   const MultivariateTransfer<double> transfer = transfer_function.view();
-  const int most_blocks = std::numeric_limits<int>::max() / max_channels;
+  const int max_blocks = std::numeric_limits<int>::max() / max_channels;
   if (kernel == nullptr || !suits_packets(channels, largest_extinction) ||
-      blocks.records.count() > most_blocks || transfer.tables > 0 ||
-      wanted.grade == Grade::proved || !(wanted.tolerance >= least_tolerance)) {
+      blocks.records.count() > max_blocks || transfer.tables > 0 || wanted.grade == Grade::proved ||
+      !(wanted.tolerance >= min_tolerance)) {
     return nullptr;
   }
   std::vector<SteppedGaussian> primitives;

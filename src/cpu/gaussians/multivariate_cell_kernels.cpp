@@ -11,9 +11,9 @@ PELLUCID_DEFINE_KERNEL(pellucid_integrate_multivariate_cells) {
   using Packet = pellucid::MultivariateCellPacket<lanes>;
   const PellucidPacketJob& rays = job->grid_and_rays;
   const pellucid::PacketGrid grid(rays);
-  typename Packet::Room room;
+  typename Packet::Workspace workspace;
   for (int first = 0; first < rays.count; first += lanes) {
-    Packet packet(*job, grid, room, first, pellucid::min(lanes, rays.count - first));
+    Packet packet(*job, grid, workspace, first, pellucid::min(lanes, rays.count - first));
     packet.run();
     packet.store(rays.results);
   }

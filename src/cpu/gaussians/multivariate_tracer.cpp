@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "cell_packets.h"
-#include "frame/rays_apart.h"
+#include "frame/ray_spacing.h"
 #include "gaussian_packets.h"
 #include "packet_setup.h"
 #include "pellucid/scene/internal/multivariate_blocks_storage.h"
@@ -56,11 +56,11 @@ class MultivariateTracer : public RayTracer {
     return trace_in_lanes(parts_in_grid(channels_.grid(), parts), options);
   }
 
-  std::optional<Surroundings> surroundings() const override {
+  std::optional<InterpolationInfo> interpolation_info() const override {
     const double longest_step = storage_.smooth().longest_step;
     if (!(longest_step > 0)) return std::nullopt;
-    return Surroundings{
-        channels_.grid(), {blocks_->records, blocks_->classes}, RaysApart::most * longest_step};
+    return InterpolationInfo{
+        channels_.grid(), {blocks_->records, blocks_->classes}, RaySpacing::most * longest_step};
   }
 
  private:
@@ -73,8 +73,8 @@ class MultivariateTracer : public RayTracer {
   /// lets them that the data's bends make. Cells cost the same. Where both take as long was
   /// measured (docs/notes/2026-11-performance.md).
   GaussianMarch faster_march() const {
-    const Movement movement = movement_in_cells(channels_, transfer_.gaussians, *blocks_);
-    return movement.in_cell <= 0.6 && movement.bend <= 620 * wanted_.tolerance
+    const GaussianVariation movement = movement_in_cells(channels_, transfer_.gaussians, *blocks_);
+    return movement.in_cell <= 0.6 && movement.second_difference <= 620 * wanted_.tolerance
                ? GaussianMarch::steps
                : GaussianMarch::cells;
   }
@@ -85,9 +85,11 @@ class MultivariateTracer : public RayTracer {
     const PacketRays inside(channels_.grid(), in_grid);
     std::vector<PellucidRayResult> found(inside.ray.size());
     // Nothing is taken from rays that spend all of their tolerance.
-    const float* const waves = options.share_of_rays < 1 ? storage_.smooth().waves : nullptr;
+    const float* const waves =
+        options.traced_tolerance_fraction < 1 ? storage_.smooth().waves : nullptr;
     if (steps_) {
-      steps_->trace(inside.ray, options.share * options.share_of_rays, waves, depth_, found.data());
+      steps_->trace(inside.ray, options.share * options.traced_tolerance_fraction, waves, depth_,
+                    found.data());
       integrate_what_is_left(inside.ray, options.share, found);
     } else {
       integrate(inside.ray, options.share, found);
@@ -144,7 +146,7 @@ class MultivariateTracer : public RayTracer {
   std::optional<MultivariateBlocks> blocks_;
   std::unique_ptr<const CellPackets> cells_;      ///< null: what it does goes the general path
   std::unique_ptr<const GaussianPackets> steps_;  ///< null: all rays go cell by cell
-  std::optional<RaysApart> rays_apart_;           ///< none: pixels are not interpolated
+  std::optional<RaySpacing> rays_apart_;          ///< none: pixels are not interpolated
 };
 
 }  // namespace

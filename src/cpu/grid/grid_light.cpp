@@ -52,14 +52,14 @@ Reflection<float> in_single(const Reflection<double>& r) {
           single(r.flat_square)};
 }
 
-std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<double>* r,
+std::optional<PacketLight> packet_light(const LayerAppearance& look, const Reflection<double>* r,
                                         const Volume& volume,
                                         const std::vector<LightSource<double>>& lights) {
   PacketLight result = no_light();
   if (r != nullptr) {
     const double steepest = steepest_gradient(look, volume);
     if (!has_moderate_square(steepest) || !has_moderate_square(std::sqrt(r->flat_square)) ||
-        lights.size() > std::size_t{PacketLight::most_lights}) {
+        lights.size() > std::size_t{PacketLight::max_lights}) {
       return std::nullopt;
     }
     result.reflection = in_single(*r);
@@ -94,7 +94,7 @@ void set_world_gradient(const Volume& volume, PacketLight& result) {
   }
 }
 
-double steepest_gradient(const LayerLook& look, const Volume& volume) {
+double steepest_gradient(const LayerAppearance& look, const Volume& volume) {
   const VolumeStatistics& data = volume.statistics();
   return (data.maximum - data.minimum) / voxel_of(look.layer());
 }
@@ -122,7 +122,7 @@ std::unique_ptr<const GridLight> GridLight::make(const Layer& layer,
   if (!light || (light->points > 0 && has_kink_in_highlight(light->reflection))) return nullptr;
   result->light_ = *light;
   if (layer.gradient_opacity) {
-    const LayerLook& look = result->look_;
+    const LayerAppearance& look = result->look_;
     const PiecewiseLinear<double>& factor = *look.extinction_factor();
     const double largest = layer.gradient_opacity->largest_factor(),
                  steepest = steepest_gradient(look, result->volume_);
@@ -161,7 +161,7 @@ double most_extinction_on(const PiecewiseLinear<double>& function,
       .largest_extinction;
 }
 
-PellucidCellResult handed_back(const RayResult& found, double opacity) {
+PellucidCellResult scalar_fallback(const RayResult& found, double opacity) {
   return {found.optical_depth,
           found.opacity,
           std::exp(-found.optical_depth),
@@ -208,7 +208,7 @@ void GridLight::integrate(const StructuredWalk<double>::Step& step, const Ray<do
   wanted.tolerance = std::max(allowed, least_allowance);
   MultivariateRayIntegrator integrator(function, most, wanted, range.end - range.begin);
   parts.integrate(0, cell.position_error, integrator);
-  result = handed_back(integrator.result(), opacity);
+  result = scalar_fallback(integrator.result(), opacity);
 }
 
 }  // namespace pellucid

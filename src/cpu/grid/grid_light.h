@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "layers/grid_gradient.h"
-#include "layers/layer_look.h"
+#include "layers/layer_appearance.h"
 #include "pellucid/packet/interface.h"
 #include "pellucid/packet/light.h"
 #include "pellucid/packet/surfaces.h"
@@ -20,13 +20,13 @@ namespace pellucid {
 
 /// Returns a layer's light as packets see it; of an unlit layer, the world alone. None: packets
 /// have no such light: more than they hold, numbers whose squares binary32 has not.
-std::optional<PacketLight> packet_light(const LayerLook& look, const Reflection<double>* reflection,
-                                        const Volume& volume,
+std::optional<PacketLight> packet_light(const LayerAppearance& look,
+                                        const Reflection<double>* reflection, const Volume& volume,
                                         const std::vector<LightSource<double>>& lights);
 /// Return how a layer reflects light, and a light seen from `origin`, in binary32.
 Reflection<float> in_single(const Reflection<double>& reflection);
 LightSource<float> in_single(const LightSource<double>& light, const Vec3<double>& origin);
-/// Puts at most PacketLight::most_lights lights into `result`, seen from the middle of the corners,
+/// Puts at most PacketLight::max_lights lights into `result`, seen from the middle of the corners,
 /// which is returned, and how far a corner or a light is from there.
 Vec3<double> place_lights(std::span<const Vec3<double>> corners,
                           const std::vector<LightSource<double>>& lights, PacketLight& result);
@@ -37,7 +37,7 @@ void set_world_gradient(const Volume& volume, PacketLight& result);
 /// Returns whether binary32 holds the square of x well.
 bool has_moderate_square(double x);
 /// Returns the largest gradient that data of this range may have between two values.
-double steepest_gradient(const LayerLook& look, const Volume& volume);
+double steepest_gradient(const LayerAppearance& look, const Volume& volume);
 /// Returns whether binary32 tells magnitudes of gradients up to `steepest` apart at the control
 /// points of a factor of at most `largest`.
 bool suits_single(const PiecewiseLinear<double>& factor, double largest, double steepest);
@@ -51,7 +51,7 @@ double most_extinction_on(const PiecewiseLinear<double>& function,
                           const CubicBernstein<double>& data, double off);
 /// Returns what was integrated of what packets hand back. `opacity`: the bound on it for which
 /// there was an allowance.
-PellucidCellResult handed_back(const RayResult& found, double opacity);
+PellucidCellResult scalar_fallback(const RayResult& found, double opacity);
 
 /// The light of a volume and its gradient opacity as packets see them, and cells that packets hand
 /// back.
@@ -78,7 +78,7 @@ class GridLight {
 
   const Volume& volume_;
   RayTolerance wanted_;
-  LayerLook look_;
+  LayerAppearance look_;
   std::vector<LightSource<double>> lights_;
   std::optional<GridGradient> gradient_, magnitude_;
   std::optional<BinnedTransferStorage> factor_;

@@ -16,7 +16,7 @@ namespace {
 constexpr double unit = static_cast<double>(rounding_unit<float>);
 
 /// Least distance of a value from other control points, in largest values of the data.
-constexpr double least_distance = 1e-4;
+constexpr double min_distance = 1e-4;
 /// Largest distance from it that has an extinction for packets to visit it.
 constexpr double reach = 0x1p-14;
 /// By what share of it the extinction is raised at a value, at the second by twice that, and so on:
@@ -46,7 +46,7 @@ class Points {
         nearest = std::min(nearest, std::abs(point.value - value));
       }
     }
-    if (!(nearest > least_distance * largest_)) return false;
+    if (!(nearest > min_distance * largest_)) return false;
     const double beside = std::min(reach * largest_, 0.25 * nearest);
     if (!is_point) put(value, table_.evaluate(value));
     const auto absorbs = [&](double at) { return table_.evaluate(at).extinction > 0; };
@@ -87,7 +87,7 @@ bool has_plain_isosurfaces(const Layer& layer) {
          fits_single(*content->volume) && content->volume->statistics().nan == 0;
 }
 
-PacketSurfaces packet_surfaces(const LayerLook& look,
+PacketSurfaces packet_surfaces(const LayerAppearance& look,
                                const std::vector<LightSource<double>>& lights,
                                double largest_color) {
   PacketSurfaces result;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "layers/layer_look.h"
+#include "layers/layer_appearance.h"
 #include "pellucid/packet/surfaces.h"
 #include "pellucid/scene/transfer_function.h"
 
@@ -15,7 +15,7 @@ namespace pellucid {
 bool has_plain_isosurfaces(const Layer& layer);
 
 /// Returns the isosurfaces of such a layer as packets see them.
-PacketSurfaces packet_surfaces(const LayerLook& look,
+PacketSurfaces packet_surfaces(const LayerAppearance& look,
                                const std::vector<LightSource<double>>& lights,
                                double largest_color);
 

@@ -34,9 +34,9 @@ constexpr int words_of_a_record = sizeof(BlockRecord) / sizeof(std::int32_t);
 /// voxel where these are cut at the many points of a table, a quarter where they are not; half a
 /// one where most blocks that might be sampled do not absorb at all of their values.
 int sampled_step_levels(const TransferTables& transfer, double share_throughout) {
-  constexpr int half = most_sampled_step_levels - 4, quarter = half + 2;
+  constexpr int half = max_sampled_step_levels - 4, quarter = half + 2;
   if (share_throughout < 0.5) return half;
-  return transfer.wide.count > 32 ? most_sampled_step_levels : quarter;
+  return transfer.wide.count > 32 ? max_sampled_step_levels : quarter;
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ std::unique_ptr<const PacketTracer> PacketTracer::make(
     std::optional<InstructionSet> instruction_set, const GridLight* light) {
   const Kernel kernel = integrator_of(packet_instruction_set(instruction_set), light != nullptr);
   if (kernel == nullptr || wanted.precision != Precision::automatic ||
-      wanted.tolerance < least_packet_tolerance ||
+      wanted.tolerance < min_packet_tolerance ||
       blocks.records.count() > std::numeric_limits<std::int32_t>::max() / words_of_a_record ||
       !suits_packets(volume, transfer.largest_extinction)) {
     return nullptr;

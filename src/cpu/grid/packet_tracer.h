@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "frame/rays_apart.h"
+#include "frame/ray_spacing.h"
 #include "grid_light.h"
 #include "pellucid/packet/interface.h"
 #include "pellucid/render/integrate_cell.h"
@@ -20,7 +20,7 @@
 namespace pellucid {
 
 /// The least tolerance for which rays go in packets: below it, most cells would be handed back.
-inline constexpr double least_packet_tolerance = 1e-5;
+inline constexpr double min_packet_tolerance = 1e-5;
 
 /// Integrates rays in packets, in the machine's best instruction set; what packets hand back, here.
 class PacketTracer {
@@ -46,7 +46,7 @@ class PacketTracer {
   /// Returns whether smooth blocks are sampled.
   bool goes_in_steps() const noexcept { return smooth_.longest_step > 0; }
   /// RayResult::longest_step of no ray is longer.
-  double most_between_rays() const noexcept { return RaysApart::most * smooth_.longest_step; }
+  double most_between_rays() const noexcept { return RaySpacing::most * smooth_.longest_step; }
 
  private:
   using Kernel = void (*)(const PellucidPacketJob*);
@@ -61,7 +61,7 @@ class PacketTracer {
                              const PellucidCell* cell, PellucidCellResult* result);
 
   const Volume& volume_;
-  RaysApart rays_apart_;
+  RaySpacing rays_apart_;
   const TransferTables& transfer_;
   const RayTolerance& wanted_;
   BinnedTransferStorage binned_;

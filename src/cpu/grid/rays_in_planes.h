@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "layers/plane_doubt.h"
+#include "layers/plane_ambiguity.h"
 #include "pellucid/scene/volume.h"
 #include "pellucid/traverse/spans.h"
 #include "ray_tracer.h"
@@ -16,7 +16,7 @@ namespace pellucid {
 /// in the world.
 inline void leave_rays_in_planes(const Volume& volume, const std::vector<RayPart>& parts,
                                  std::vector<RayResult>& results) {
-  PlaneDoubt planes;
+  PlaneAmbiguity planes;
   volume.visit([&](const auto& grid) {
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const Ray<double> ray = volume.grid_from_world().ray(parts[i].ray);

@@ -36,7 +36,7 @@ constexpr double support_width = 0x1p-14;
 class SurfaceTracer : public RayTracer {
  public:
   SurfaceTracer(const TracerTask& task, Kernel kernel, const PacketLight& light,
-                const LayerLook& look, const std::vector<LightSource<double>>& lights)
+                const LayerAppearance& look, const std::vector<LightSource<double>>& lights)
       : volume_(*std::get<VolumeContent>(task.layer.content).volume),
         support_(*isosurface_support(look, 0, largest_value(volume_) * support_width)),
         tables_(support_),
@@ -106,13 +106,13 @@ class SurfaceTracer : public RayTracer {
 std::unique_ptr<const RayTracer> make_surface_tracer(const TracerTask& task) {
   if (!shows_plain_isosurfaces(task.layer) || task.integration.method != Method::exact ||
       task.wanted.grade == Grade::proved || task.wanted.precision != Precision::automatic ||
-      task.wanted.tolerance < least_packet_tolerance) {
+      task.wanted.tolerance < min_packet_tolerance) {
     return nullptr;
   }
   const Volume& volume = *std::get<VolumeContent>(task.layer.content).volume;
   const Kernel kernel = kernel_for(task);
   if (kernel == nullptr || !suits_packets(volume, 1)) return nullptr;
-  const LayerLook look(task.layer);
+  const LayerAppearance look(task.layer);
   const std::vector<LightSource<double>> lights = light_sources(task.lights);
   const auto light = packet_light(look, look.surface_reflection(), volume, lights);
   if (!light) return nullptr;

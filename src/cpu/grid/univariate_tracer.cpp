@@ -23,14 +23,14 @@ class UnivariateTracer : public RayTracer {
 
   /// Returns whether its rays go in packets: those of lit layers have to.
   bool has_packets() const { return packets_ != nullptr; }
-  std::optional<Surroundings> surroundings() const override;
+  std::optional<InterpolationInfo> interpolation_info() const override;
   bool keeps_to_ranges() const override { return true; }
   std::vector<RayResult> trace(const std::vector<RayPart>& parts,
                                const TraceOptions& options) const override {
     const std::vector<RayPart> in_grid = parts_in_grid(volume_, parts);
     if (!packets_) return trace_one_by_one(in_grid, options);
     std::vector<RayResult> results =
-        packets_->trace(in_grid, options.share * options.share_of_rays, depth_);
+        packets_->trace(in_grid, options.share * options.traced_tolerance_fraction, depth_);
     if (light_ && light_->view().of_field != 0) leave_rays_in_planes(volume_, parts, results);
     return results;
   }
@@ -80,12 +80,12 @@ UnivariateTracer::UnivariateTracer(const TracerTask& task)
       wanted_, task.options.machine.instruction_set, light_.get());
 }
 
-std::optional<RayTracer::Surroundings> UnivariateTracer::surroundings() const {
+std::optional<RayTracer::InterpolationInfo> UnivariateTracer::interpolation_info() const {
   // Vacuum ends anywhere between rays; and where half of the opacity is reached goes in leaps.
   if (!packets_ || !packets_->goes_in_steps() || depth_ || volume_.statistics().nan > 0) {
     return std::nullopt;
   }
-  return Surroundings{volume_, *blocks_, packets_->most_between_rays()};
+  return InterpolationInfo{volume_, *blocks_, packets_->most_between_rays()};
 }
 
 std::vector<RayResult> UnivariateTracer::trace_one_by_one(const std::vector<RayPart>& in_grid,

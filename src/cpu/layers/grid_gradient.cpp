@@ -46,7 +46,7 @@ double GridGradient::magnitude_at(const GridPlace<double>& place) const {
 }
 
 double GridGradient::doubt(const StructuredWalk<double>::Step& step,
-                           const GridAxis<double> (&axis)[3], const PlaneDoubt& planes,
+                           const GridAxis<double> (&axis)[3], const PlaneAmbiguity& planes,
                            const CubicBernstein<double> (&gradient)[3]) const {
   if (kind_ == GradientKind::smooth) return 0;
   double largest = 0;
@@ -70,7 +70,8 @@ double GridGradient::doubt(const StructuredWalk<double>::Step& step,
 }
 
 bool GridGradient::is_doubtful(const StructuredWalk<double>::Step& step,
-                               const GridAxis<double> (&axis)[3], const PlaneDoubt& planes) const {
+                               const GridAxis<double> (&axis)[3],
+                               const PlaneAmbiguity& planes) const {
   bool has_other = false;
   if (kind_ != GradientKind::smooth) {
     planes.for_each_other_cell(axis, step, [&](const int(&)[3]) { has_other = true; });

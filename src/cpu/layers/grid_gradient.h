@@ -8,7 +8,7 @@
 #include "pellucid/scene/light.h"
 #include "pellucid/scene/volume.h"
 #include "pellucid/traverse/structured_walk.h"
-#include "plane_doubt.h"
+#include "plane_ambiguity.h"
 
 namespace pellucid {
 
@@ -26,10 +26,10 @@ class GridGradient {
   /// neighbor of the step's cell: where rays run along planes, at which gradients `field` jump. Of
   /// the others 0. `axis`: that of the walk; `gradient`: that of along().
   double doubt(const StructuredWalk<double>::Step& step, const GridAxis<double> (&axis)[3],
-               const PlaneDoubt& planes, const CubicBernstein<double> (&gradient)[3]) const;
+               const PlaneAmbiguity& planes, const CubicBernstein<double> (&gradient)[3]) const;
   /// Returns whether it may differ at all.
   bool is_doubtful(const StructuredWalk<double>::Step& step, const GridAxis<double> (&axis)[3],
-                   const PlaneDoubt& planes) const;
+                   const PlaneAmbiguity& planes) const;
   /// Computes the magnitude of the `smooth` gradient at the data values, trilinear between.
   CubicBernstein<double> magnitude_along(const StructuredWalk<double>::Step& step) const;
   /// Return both at a place; its cell has no NaN corner.

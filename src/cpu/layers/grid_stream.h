@@ -8,7 +8,7 @@
 #include "layer_stream.h"
 #include "pellucid/traverse/block_walk.h"
 #include "pellucid/traverse/structured_walk.h"
-#include "plane_doubt.h"
+#include "plane_ambiguity.h"
 
 namespace pellucid {
 
@@ -17,7 +17,7 @@ inline double grid_position_error(double t) {
   return 8 * rounding_unit<double> * t;
 }
 
-/// Walks through the blocks of a grid, and through the cells of those that are not skipped.
+/// BlockSegments through the blocks of a grid, and through the cells of those that are not skipped.
 class GridStream : public LayerStream {
  public:
   /// All must outlive the stream. `axis`: of the cells to walk through, in the grid's coordinates.
@@ -103,7 +103,7 @@ class GridStream : public LayerStream {
   }
   const Affine<double>& grid_from_world() const { return volume_.grid_from_world(); }
   const Ray<double>& ray() const { return ray_; }
-  const PlaneDoubt& planes() const { return planes_; }
+  const PlaneAmbiguity& planes() const { return planes_; }
 
  private:
   /// Returns whether a slice is in the range, which becomes what is to be visited of it.
@@ -128,7 +128,7 @@ class GridStream : public LayerStream {
   bool wholly_;
   std::vector<SlicePosition> positions_;
   Ray<double> ray_{};
-  PlaneDoubt planes_;
+  PlaneAmbiguity planes_;
   std::optional<BlockWalk> blocks_;
   std::optional<StructuredWalk<double>> cells_;
   BlockStep block_{};

@@ -9,7 +9,7 @@
 #include "label_axes.h"
 #include "pellucid/scene/internal/block_classes_storage.h"
 #include "pellucid/scene/internal/transfer_tables_storage.h"
-#include "plane_doubt.h"
+#include "plane_ambiguity.h"
 
 namespace pellucid {
 namespace {
@@ -116,7 +116,7 @@ class LabelStream : public GridStream {
   }
 
   const LabelSource& source_;
-  PlaneDoubt sides_;
+  PlaneAmbiguity sides_;
   StructuredWalk<double>::Step ahead_{};
   double label_ = 0, doubt_ = 0;
   bool has_ahead_ = false;

@@ -12,7 +12,7 @@ LayerPoint point_of(const LayerStretch& stretch, const LayerSource& source, doub
   const double u = std::clamp((t - stretch.begin) / (stretch.end - stretch.begin), 0.0, 1.0);
   const int channels = source.functions()[static_cast<std::size_t>(point.function)].channels;
   for (int c = 0; c < channels; ++c) point.value[c] = evaluate(stretch.data[c], u);
-  const LayerLook& look = source.look();
+  const LayerAppearance& look = source.look();
   if (look.reflection() != nullptr) {
     for (int a = 0; a < 3; ++a) point.gradient[a] = evaluate(stretch.gradient[a], u);
   }

@@ -13,9 +13,9 @@ namespace pellucid {
 struct LayerPoint {
   int function = -1;  ///< index of LayerSource::functions(); -1: absent, or vacuum
   double value[max_channels]{};
-  // Of layers that need them (LayerLook), once they are asked for:
+  // Of layers that need them (LayerAppearance), once they are asked for:
   Vec3<double> gradient{};     ///< in the world, for light
-  double factor_argument = 0;  ///< of LayerLook::extinction_factor()
+  double factor_argument = 0;  ///< of LayerAppearance::extinction_factor()
   GridPlace<double> place{};   ///< of grids: where it is
 };
 

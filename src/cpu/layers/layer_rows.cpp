@@ -42,8 +42,8 @@ void write_cell(const StructuredWalk<double>::Step& cell, Interval<double> range
 }
 
 /// Returns false if the gradient is not for lanes.
-bool write_gradient(const LayerLook& look, const LayerStretch& stretch, Interval<double> range,
-                    float* to) {
+bool write_gradient(const LayerAppearance& look, const LayerStretch& stretch,
+                    Interval<double> range, float* to) {
   if (stretch.gradient_error > 0) return false;
   const Interval<double> share = share_of({stretch.begin, stretch.end}, range);
   const bool whole = share.begin <= 0 && share.end >= 1;
@@ -115,7 +115,7 @@ struct FactorRange {
 };
 
 /// None: nobody knows how large the argument is.
-std::optional<FactorRange> factor_range(const LayerLook& look) {
+std::optional<FactorRange> factor_range(const LayerAppearance& look) {
   const Layer& layer = look.layer();
   const auto* const channels = std::get_if<ChannelsContent>(&layer.content);
   if (const ChannelTransferFunction* const factor = look.value_factor()) {
@@ -136,7 +136,7 @@ std::optional<FactorRange> factor_range(const LayerLook& look) {
 }
 
 /// Returns the variable whose gradient lights a layer.
-int lit_variable(const LayerLook& look) {
+int lit_variable(const LayerAppearance& look) {
   return look.layer().shading ? look.layer().shading->channel : 0;
 }
 
@@ -145,7 +145,7 @@ int lit_variable(const LayerLook& look) {
 bool prepare(SeenLayer& one, const PacketLight& lights,
              std::deque<BinnedTransferStorage>& functions) {
   const LayerSource& source = *one.source;
-  const LayerLook& look = source.look();
+  const LayerAppearance& look = source.look();
   one.first_function = static_cast<int>(functions.size());
   const bool suits =
       one.mixture
@@ -228,7 +228,7 @@ bool write_part(const SeenLayer& layer, int number, const LayerStretch& stretch,
     if (layer.mixture) write_primitives(stretch.primitives, to + Row::primitives_of_cell);
     return true;
   }
-  const LayerLook& look = layer.source->look();
+  const LayerAppearance& look = layer.source->look();
   if (layer.mixture) {
     to[Row::part_kind] = Row::curve;
     to[Row::rounding] = 0;

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "layer_look.h"
+#include "layer_appearance.h"
 #include "pellucid/render/integrate_cell.h"
 #include "pellucid/scene/layer.h"
 #include "pellucid/scene/stretch_source.h"
@@ -14,7 +14,7 @@
 namespace pellucid {
 
 /// A stretch of a ray on which all channels of a layer are cubics, or the layer is absent. Of
-/// layers that need them (LayerLook) it has gradients; the magnitude is the argument of their
+/// layers that need them (LayerAppearance) it has gradients; the magnitude is the argument of their
 /// factor.
 struct LayerStretch : FieldStretch {
   int function = -1;        ///< index of LayerSource::functions(); -1: absent
@@ -58,14 +58,14 @@ class LayerSource {
     static_cast<void>(variable);
     return nullptr;
   }
-  const LayerLook& look() const noexcept { return look_; }
+  const LayerAppearance& look() const noexcept { return look_; }
   double most_extinction() const noexcept { return most_extinction_; }
 
  protected:
   std::vector<MultivariateTransfer<double>> functions_;
 
  private:
-  LayerLook look_;
+  LayerAppearance look_;
   double most_extinction_;
 };
 

@@ -53,15 +53,15 @@ class AlignedBytes {
 bool LayeredPackets::suit(const LayerSetting& setting) {
   const RayTolerance& wanted = setting.wanted;
   return find_kernel(setting.instruction_set) != nullptr && wanted.grade != Grade::proved &&
-         wanted.precision == Precision::automatic && wanted.tolerance >= least_packet_tolerance &&
-         setting.lights.size() <= std::size_t{PacketLight::most_lights} &&
+         wanted.precision == Precision::automatic && wanted.tolerance >= min_packet_tolerance &&
+         setting.lights.size() <= std::size_t{PacketLight::max_lights} &&
          setting.integration.method == Method::exact;
 }
 
 std::unique_ptr<const LayeredPackets> LayeredPackets::make(
     const std::vector<ClippedLayer>& layers, const std::vector<LightSource<double>>& lights,
     const RayTolerance& wanted, bool depth) {
-  if (layers.empty() || layers.size() > std::size_t{Row::most_layers} ||
+  if (layers.empty() || layers.size() > std::size_t{Row::max_layers} ||
       !suit(layers[0].setup->setting())) {
     return nullptr;
   }
@@ -72,7 +72,7 @@ std::unique_ptr<const LayeredPackets> LayeredPackets::make(
   const bool any =
       std::ranges::any_of(result->seen_, [](const SeenLayer& one) { return one.in_lanes; });
   if (!any || result->marks_ > Row::most_marks ||
-      result->seen_.size() > std::size_t{Row::most_layers}) {
+      result->seen_.size() > std::size_t{Row::max_layers}) {
     return nullptr;
   }
   return result;
@@ -119,7 +119,7 @@ LayeredPackets::LayeredPackets(const std::vector<ClippedLayer>& layers,
 
 void LayeredPackets::add(const ClippedLayer& layer, std::size_t number, const PacketLight& lights) {
   const LayerSource& source = layer.setup->source();
-  const LayerLook& look = source.look();
+  const LayerAppearance& look = source.look();
   first_mark_.push_back(marks_);
   if (look.has_surfaces()) marks_ += static_cast<int>(look.isosurfaces().size()) + 1;
   const std::vector<MultivariateTransfer<double>>& functions = source.functions();
@@ -169,7 +169,7 @@ class LayeredPackets::Packet {
         lanes_(static_cast<std::size_t>(job_.lanes)),
         layers_(of.seen_.size()),
         head_(lanes_ * Row::of_a_ray * Row::head_fields),
-        part_(layers_ * Row::most_lanes * Row::of_a_ray * Row::part_fields),
+        part_(layers_ * Row::max_lanes * Row::of_a_ray * Row::part_fields),
         curves_(layers_),
         row_(lanes_ * Row::of_a_ray),
         range_(2 * lanes_ * Row::of_a_ray),
@@ -248,7 +248,7 @@ class LayeredPackets::Packet {
 
   void begin() {
     job_.count = static_cast<std::int32_t>(used_);
-    for (std::size_t l = 0; l < std::size_t{Row::most_lanes}; ++l) {
+    for (std::size_t l = 0; l < std::size_t{Row::max_lanes}; ++l) {
       const std::size_t from = l < used_ ? l : 0;
       job_.tolerance[l] = static_cast<float>(tolerance_[from]);
       job_.length[l] = single_above(inside_[from].end - inside_[from].begin + beyond(from));
@@ -355,7 +355,7 @@ class LayeredPackets::Packet {
       const SeenLayer& layer = of_.seen_[k];
       const int number = merge.key()[layer.layer];
       if (number < 0) continue;
-      float* const to = &part_[(k * Row::most_lanes * Row::of_a_ray + at) * Row::part_fields];
+      float* const to = &part_[(k * Row::max_lanes * Row::of_a_ray + at) * Row::part_fields];
       bool absorbs = true;
       float* const curves = layer.mixture ? &curves_[k][at * curve_fields(k)] : nullptr;
       for_lanes = write_part(layer, number, *merge.stretches()[layer.layer], part.range, to, curves,
@@ -420,7 +420,7 @@ class LayeredPackets::Packet {
     });
     // Nothing is left, unless that was charged.
     if (!integrator.done()) integrator.set_remaining_length(0);
-    job_.handed[lane] = handed_back(integrator.result(), opacity);
+    job_.handed[lane] = scalar_fallback(integrator.result(), opacity);
     return true;
   }
 
@@ -441,20 +441,20 @@ class LayeredPackets::Packet {
   std::size_t lanes_, layers_, used_ = 0;
   std::vector<float> head_, part_;
   std::vector<std::vector<float>> curves_;  ///< of layers of several variables
-  std::array<const float*, Row::most_layers> curve_{};
+  std::array<const float*, Row::max_layers> curve_{};
   std::vector<MergedPart> row_;         ///< what rows were made from
   std::vector<double> range_;           ///< of rows: begin and end
   std::vector<PellucidGridRays> walk_;  ///< of layers
   std::deque<LayerMerge> merge_;        ///< of each lane
   LayerMerge again_;                    ///< of what lanes are not for
   MediumParts media_;
-  std::array<PellucidRayResult, Row::most_lanes> results_{};
+  std::array<PellucidRayResult, Row::max_lanes> results_{};
   // Of the lanes' rays.
-  std::array<Interval<double>, Row::most_lanes> inside_{};
-  std::array<Ray<double>, Row::most_lanes> ray_{};
-  std::array<std::size_t, Row::most_lanes> number_{};
-  std::array<double, Row::most_lanes> tolerance_{};
-  std::array<bool, Row::most_lanes> ended_{}, gave_up_{};
+  std::array<Interval<double>, Row::max_lanes> inside_{};
+  std::array<Ray<double>, Row::max_lanes> ray_{};
+  std::array<std::size_t, Row::max_lanes> number_{};
+  std::array<double, Row::max_lanes> tolerance_{};
+  std::array<bool, Row::max_lanes> ended_{}, gave_up_{};
 };
 
 std::vector<RayResult> LayeredPackets::integrate(const std::vector<RayPart>& parts,

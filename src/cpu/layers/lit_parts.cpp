@@ -15,7 +15,7 @@ void LitParts::start(const Ray<double>& ray, Interval<double> range) {
 }
 
 void LitParts::add(const LayerStretch& stretch, const MultivariateTransfer<double>& function,
-                   const LayerLook& look) {
+                   const LayerAppearance& look) {
   layers_.emplace_back();
   LitLayer<double>& layer = layers_.back();
   layer.transfer = &function;

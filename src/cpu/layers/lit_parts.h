@@ -22,7 +22,7 @@ class LitParts {
   /// Adds the part of a layer's stretch in that range. The layer's function and look must outlive
   /// the stretch.
   void add(const LayerStretch& stretch, const MultivariateTransfer<double>& function,
-           const LayerLook& look);
+           const LayerAppearance& look);
   /// Finds the cuts; call it behind the last layer.
   void finish();
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "bundle.h"
 #include "layer_merge.h"
+#include "layer_mixture.h"
 #include "lit_parts.h"
 
 namespace pellucid {
@@ -12,8 +12,8 @@ namespace pellucid {
 class MultivariateRayIntegrator;
 
 /// Has a MultivariateRayIntegrator integrate the layers that are present on a part of a ray: one
-/// function of all of their channels (bundle.h), a sum of terms; where any of them has light or a
-/// factor of its extinction, lit panels take its place (lit_parts.h). Used by one thread.
+/// function of all of their channels (layer_mixture.h), a sum of terms; where any of them has light
+/// or a factor of its extinction, lit panels take its place (lit_parts.h). Used by one thread.
 class MediumParts {
  public:
   /// Both must outlive the object.
@@ -38,9 +38,9 @@ class MediumParts {
 
   const std::vector<const LayerSource*>& sources_;
   LitParts parts_;
-  Bundles bundles_;
-  const Bundle* bundle_ = nullptr;  ///< of the last part without light
-  Bundle::Span span_;
+  LayerMixtureCache bundles_;
+  const LayerMixture* bundle_ = nullptr;  ///< of the last part without light
+  LayerMixture::Span span_;
 };
 
 }  // namespace pellucid

@@ -76,7 +76,7 @@ auto call_of(const OwnSource& source, const Call& call) {
 class Promises {
  public:
   /// Which no ray through data that fit into memory has.
-  static constexpr long most_stretches = 1L << 22;
+  static constexpr long max_stretches = 1L << 22;
 
   explicit Promises(const OwnSource& source) : source_(source) {}
 
@@ -95,8 +95,8 @@ class Promises {
   Interval<double> box() const { return box_; }
 
   void check(const FieldStretch& stretch) {
-    if (++told_ > most_stretches) {
-      fail("tells more than " + std::to_string(most_stretches) +
+    if (++told_ > max_stretches) {
+      fail("tells more than " + std::to_string(max_stretches) +
            " stretches; let next() return false behind the last one");
     }
     if (!std::isfinite(stretch.begin) || !std::isfinite(stretch.end)) {
@@ -180,7 +180,7 @@ class Promises {
   long told_ = 0;
 };
 
-/// Stretches of one's own, cut to ranges.
+/// BlockIntervals of one's own, cut to ranges.
 class OwnStream : public LayerStream {
  public:
   OwnStream(const OwnSource& source, std::unique_ptr<StretchStream> stream)

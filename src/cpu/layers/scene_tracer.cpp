@@ -32,7 +32,7 @@ bool is_left(const RayResult& result) {
 }
 
 /// Stretch of a ray that one tracer follows.
-struct Piece {
+struct RaySegment {
   static constexpr int general = -1;
   int tracer;  ///< index of the layer that is alone, or `general`
   Interval<double> range;
@@ -40,7 +40,7 @@ struct Piece {
 };
 
 /// A ray on its way, composited front to back.
-struct Journey {
+struct RayState {
   /// Result of a piece.
   struct Found {
     Interval<double> range;
@@ -49,7 +49,7 @@ struct Journey {
     HalfOpacity half;       ///< of that
     bool has_surfaces;      ///< whether a medium is not all of it
   };
-  std::vector<Piece> pieces;
+  std::vector<RaySegment> pieces;
   RayResult found = missed_ray_result();
   std::vector<Found> of_pieces;  ///< those that absorb, front to back
   bool done = false;             ///< what is left cannot matter
@@ -115,8 +115,8 @@ class SceneTracer : public RayTracer {
     if (only_ == nullptr && !layers_.empty()) packets();
   }
 
-  std::optional<Surroundings> surroundings() const override {
-    return only_ != nullptr ? only_->surroundings() : std::nullopt;
+  std::optional<InterpolationInfo> interpolation_info() const override {
+    return only_ != nullptr ? only_->interpolation_info() : std::nullopt;
   }
   bool keeps_to_ranges() const override { return true; }
 
@@ -144,20 +144,20 @@ class SceneTracer : public RayTracer {
       }
       return results;
     }
-    std::vector<Journey> journeys(parts.size());
+    std::vector<RayState> journeys(parts.size());
     std::size_t most = 0;
     for (std::size_t i = 0; i < parts.size(); ++i) {
       plan(parts[i], journeys[i]);
       most = std::max(most, journeys[i].pieces.size());
     }
     for (std::size_t n = 0; n < most && !options.stop.stop_requested(); ++n) {
-      follow_alone(n, parts, options, journeys, general);
-      follow_together(n, parts, options, journeys, general);
+      trace_single_layer(n, parts, options, journeys, general);
+      trace_overlap(n, parts, options, journeys, general);
     }
     std::vector<RayResult> results;
     results.reserve(parts.size());
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      Journey& journey = journeys[i];
+      RayState& journey = journeys[i];
       if (depth_ && !options.stop.stop_requested()) {
         journey.bracket_half();
         find_depth(general, parts[i], journey.found);
@@ -202,7 +202,7 @@ class SceneTracer : public RayTracer {
   }
 
   /// Cuts a part of a ray where layers begin and end.
-  void plan(const RayPart& part, Journey& journey) const {
+  void plan(const RayPart& part, RayState& journey) const {
     struct Stretch {
       int layer;
       Interval<double> range;
@@ -230,7 +230,7 @@ class SceneTracer : public RayTracer {
     }
     journey.found.error = largest_color() * std::min(unknown, 1.0);
     std::ranges::sort(ends);
-    std::vector<Piece>& pieces = journey.pieces;
+    std::vector<RaySegment>& pieces = journey.pieces;
     for (std::size_t n = 0; n + 1 < ends.size(); ++n) {
       const Interval<double> range{ends[n], ends[n + 1]};
       if (!(range.begin < range.end)) continue;
@@ -246,16 +246,16 @@ class SceneTracer : public RayTracer {
       const bool uncut =
           first->whole && first->range.begin == range.begin && first->range.end == range.end;
       const bool alone = present == 1 && fast != nullptr && (fast->keeps_to_ranges() || uncut);
-      add({alone ? first->layer : Piece::general, range}, pieces);
+      add({alone ? first->layer : RaySegment::general, range}, pieces);
     }
     leave_short_ones(pieces);
     share_tolerance(pieces);
   }
 
   /// Adds a piece, or makes the last one longer.
-  static void add(const Piece& piece, std::vector<Piece>& pieces) {
+  static void add(const RaySegment& piece, std::vector<RaySegment>& pieces) {
     if (!pieces.empty() && pieces.back().tracer == piece.tracer &&
-        (piece.tracer == Piece::general || pieces.back().range.end == piece.range.begin)) {
+        (piece.tracer == RaySegment::general || pieces.back().range.end == piece.range.begin)) {
       pieces.back().range.end = piece.range.end;
     } else {
       pieces.push_back(piece);
@@ -263,35 +263,35 @@ class SceneTracer : public RayTracer {
   }
 
   /// Gives short pieces beside the general path to it.
-  static void leave_short_ones(std::vector<Piece>& pieces) {
-    const auto length = [](const Piece& piece) { return piece.range.end - piece.range.begin; };
+  static void leave_short_ones(std::vector<RaySegment>& pieces) {
+    const auto length = [](const RaySegment& piece) { return piece.range.end - piece.range.begin; };
     for (std::size_t n = 0; n < pieces.size(); ++n) {
-      if (pieces[n].tracer == Piece::general) continue;
+      if (pieces[n].tracer == RaySegment::general) continue;
       for (const std::size_t beside : {n - 1, n + 1}) {
-        if (beside < pieces.size() && pieces[beside].tracer == Piece::general &&
+        if (beside < pieces.size() && pieces[beside].tracer == RaySegment::general &&
             length(pieces[n]) < short_share * length(pieces[beside])) {
-          pieces[n].tracer = Piece::general;
+          pieces[n].tracer = RaySegment::general;
         }
       }
     }
-    std::vector<Piece> joined;
-    for (const Piece& piece : pieces) add(piece, joined);
+    std::vector<RaySegment> joined;
+    for (const RaySegment& piece : pieces) add(piece, joined);
     pieces = std::move(joined);
   }
 
   /// Half of the tolerance is for the general path, where what others have not spent is added.
-  static void share_tolerance(std::vector<Piece>& pieces) {
+  static void share_tolerance(std::vector<RaySegment>& pieces) {
     const auto general = static_cast<double>(std::ranges::count_if(
-        pieces, [](const Piece& piece) { return piece.tracer == Piece::general; }));
+        pieces, [](const RaySegment& piece) { return piece.tracer == RaySegment::general; }));
     const double alone = static_cast<double>(pieces.size()) - general;
-    for (Piece& piece : pieces) {
+    for (RaySegment& piece : pieces) {
       const double half = general > 0 && alone > 0 ? 0.5 : 1;
-      piece.share = half / (piece.tracer == Piece::general ? general : alone);
+      piece.share = half / (piece.tracer == RaySegment::general ? general : alone);
     }
   }
 
   /// Returns whether the n-th piece is to be followed; ends rays that nothing more matters of.
-  bool goes_on(Journey& journey, std::size_t n, const TraceOptions& options) const {
+  bool goes_on(RayState& journey, std::size_t n, const TraceOptions& options) const {
     if (journey.done || n >= journey.pieces.size()) return false;
     const double rest = journey.transparency() * largest_color();
     const double left = wanted_.tolerance * options.share - journey.found.error;
@@ -302,8 +302,9 @@ class SceneTracer : public RayTracer {
   }
 
   /// The n-th pieces on which one layer is alone.
-  void follow_alone(std::size_t n, const std::vector<RayPart>& parts, const TraceOptions& options,
-                    std::vector<Journey>& journeys, std::optional<GeneralPath>& general) const {
+  void trace_single_layer(std::size_t n, const std::vector<RayPart>& parts,
+                          const TraceOptions& options, std::vector<RayState>& journeys,
+                          std::optional<GeneralPath>& general) const {
     struct Group {
       int tracer;
       double share;
@@ -313,8 +314,8 @@ class SceneTracer : public RayTracer {
     std::vector<Group> groups;
     for (std::size_t i = 0; i < journeys.size(); ++i) {
       if (!goes_on(journeys[i], n, options)) continue;
-      const Piece& piece = journeys[i].pieces[n];
-      if (piece.tracer == Piece::general) continue;
+      const RaySegment& piece = journeys[i].pieces[n];
+      if (piece.tracer == RaySegment::general) continue;
       auto group = std::ranges::find_if(groups, [&](const Group& one) {
         return one.tracer == piece.tracer && one.share == piece.share;
       });
@@ -333,7 +334,7 @@ class SceneTracer : public RayTracer {
       std::vector<RayResult> found = setup.fast()->trace(group.parts, own);
       follow_left(group.parts, wanted_.tolerance * own.share, own.stop, found, general);
       for (std::size_t k = 0; k < found.size(); ++k) {
-        Journey& journey = journeys[group.of[k]];
+        RayState& journey = journeys[group.of[k]];
         journey.add_behind(found[k], group.parts[k].range, has_surfaces(setup.layer()));
         if (journey.pieces.size() == 1) {
           journey.found.half_opacity_depth = found[k].half_opacity_depth;
@@ -343,17 +344,16 @@ class SceneTracer : public RayTracer {
   }
 
   /// The n-th pieces of the general path.
-  void follow_together(std::size_t n, const std::vector<RayPart>& parts,
-                       const TraceOptions& options, std::vector<Journey>& journeys,
-                       std::optional<GeneralPath>& general) const {
+  void trace_overlap(std::size_t n, const std::vector<RayPart>& parts, const TraceOptions& options,
+                     std::vector<RayState>& journeys, std::optional<GeneralPath>& general) const {
     std::vector<RayPart> ahead;
     std::vector<double> tolerances;
     std::vector<std::size_t> of;
     for (std::size_t i = 0; i < journeys.size(); ++i) {
-      Journey& journey = journeys[i];
+      RayState& journey = journeys[i];
       if (!goes_on(journey, n, options)) continue;
-      const Piece& piece = journey.pieces[n];
-      if (piece.tracer != Piece::general) continue;
+      const RaySegment& piece = journey.pieces[n];
+      if (piece.tracer != RaySegment::general) continue;
       // What is not spent, nor for pieces behind.
       const double tolerance = wanted_.tolerance * options.share;
       double left = tolerance - journey.found.error;

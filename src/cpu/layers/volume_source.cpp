@@ -15,7 +15,7 @@
 #include "pellucid/scene/internal/block_classes_storage.h"
 #include "pellucid/scene/internal/multivariate_blocks_storage.h"
 #include "pellucid/scene/internal/transfer_tables_storage.h"
-#include "plane_doubt.h"
+#include "plane_ambiguity.h"
 
 namespace pellucid {
 namespace {
@@ -35,7 +35,7 @@ void skip_only_where_both_do(std::vector<BlockClass>& classes, const BlockClasse
 
 /// Lets the blocks be visited in which a channel has the value of an isosurface.
 void visit_isosurfaces(std::vector<BlockClass>& classes, const BlockRecords& records, int channel,
-                       const LayerLook& look, const LayerTask& task) {
+                       const LayerAppearance& look, const LayerTask& task) {
   const auto function = isosurface_support(look, channel, 0);
   if (!function) return;
   const TransferTablesStorage tables(*function);
@@ -53,7 +53,7 @@ class GridGradients {
  public:
   /// `volume_of(channel)` returns a volume.
   template <class VolumeOf>
-  GridGradients(const LayerLook& look, const VolumeOf& volume_of) {
+  GridGradients(const LayerAppearance& look, const VolumeOf& volume_of) {
     if (const auto& shading = look.layer().shading) {
       gradient_.emplace(volume_of(shading->channel), shading->gradient);
     }
@@ -63,7 +63,7 @@ class GridGradients {
   }
   /// `axis`: that of the walk.
   void fill(const StructuredWalk<double>::Step& step, const GridAxis<double> (&axis)[3],
-            const PlaneDoubt& planes, LayerStretch& stretch) const {
+            const PlaneAmbiguity& planes, LayerStretch& stretch) const {
     if (gradient_) {
       gradient_->along(step, stretch.gradient);
       stretch.gradient_error = gradient_->doubt(step, axis, planes, stretch.gradient);
@@ -79,7 +79,7 @@ class GridGradients {
   bool are_continuous() const { return !gradient_ || gradient_->kind() == GradientKind::smooth; }
   /// Returns whether the gradient of a step may be that of another cell.
   bool is_doubtful(const StructuredWalk<double>::Step& step, const GridAxis<double> (&axis)[3],
-                   const PlaneDoubt& planes) const {
+                   const PlaneAmbiguity& planes) const {
     return gradient_ && gradient_->is_doubtful(step, axis, planes);
   }
 
@@ -340,7 +340,7 @@ class VolumeStream : public GridStream {
 
   const VolumeSource& source_;
   bool by_cells_;
-  PlaneDoubt sides_;
+  PlaneAmbiguity sides_;
   // The cell.
   StructuredWalk<double>::Step step_{};
   bool by_cell_ = false;  ///< whether neither its data nor its gradients are known

@@ -11,18 +11,18 @@ template <class S>
 void run(const PellucidMeshJob& job) {
   constexpr int lanes = PELLUCID_LANES;
   using Packet = pellucid::MeshPacket<S, lanes>;
-  typename Packet::Room room[2];
+  typename Packet::Workspace workspace[2];
   for (int first = 0; first < job.count;) {
-    const auto next = [&](typename Packet::Room& of_packet) {
+    const auto next = [&](typename Packet::Workspace& of_packet) {
       const int begin = first;
       first = pellucid::min(begin + lanes, job.count);
       return Packet(job, of_packet, begin, first - begin);
     };
-    Packet one = next(room[0]);
+    Packet one = next(workspace[0]);
     if (first == job.count) {
       Packet::run({&one});
     } else {
-      Packet other = next(room[1]);
+      Packet other = next(workspace[1]);
       Packet::run({&one, &other});
       other.store(job.results);
     }

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "gaussians/near_mixture_storage.h"
+#include "gaussians/culled_mixture_storage.h"
 #include "grid/packet_tracer.h"
 #include "mesh_field_storage.h"
 #include "mesh_hits.h"
@@ -72,7 +72,7 @@ class MeshTracer : public RayTracer {
   void prepare(const TracerTask& task, double largest_extinction, bool several) {
     const InstructionSet set = packet_instruction_set(task.options.machine.instruction_set);
     const MeshChannels& channels = mesh_of(task);
-    if (wanted_.precision != Precision::automatic || wanted_.tolerance < least_packet_tolerance ||
+    if (wanted_.precision != Precision::automatic || wanted_.tolerance < min_packet_tolerance ||
         !is_moderate(channels.mesh().statistics().mean_edge) || largest_extinction > 1e12) {
       return;
     }
@@ -154,7 +154,7 @@ class UnivariateMeshTracer : public MeshTracer {
     std::vector<std::size_t> left(rays.size());
     std::iota(left.begin(), left.end(), std::size_t{0});
     if (kernel_ != nullptr) {
-      if (wanted_.tolerance >= least_tolerance_in_float) {
+      if (wanted_.tolerance >= min_tolerance_in_float) {
         follow(rays, options.share, false, left, results);
       }
       if (!left.empty()) follow(rays, options.share, true, left, results);
@@ -187,7 +187,7 @@ class UnivariateMeshTracer : public MeshTracer {
 
  private:
   /// Below it most rays would be followed twice.
-  static constexpr double least_tolerance_in_float = 2e-4;
+  static constexpr double min_tolerance_in_float = 2e-4;
 
   static void integrate_span(const PellucidSpanContext* context, const PellucidLinearSpan* span,
                              PellucidCellResult* result) {

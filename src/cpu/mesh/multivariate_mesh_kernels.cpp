@@ -7,9 +7,9 @@
 PELLUCID_DEFINE_KERNEL(pellucid_integrate_multivariate_mesh) {
   constexpr int lanes = PELLUCID_LANES;
   using Packet = pellucid::MultivariateMeshPacket<lanes>;
-  typename Packet::Room room;
+  typename Packet::Workspace workspace;
   for (int first = 0; first < job->count; first += lanes) {
-    Packet packet(*job, room, first, pellucid::min(lanes, job->count - first));
+    Packet packet(*job, workspace, first, pellucid::min(lanes, job->count - first));
     packet.run();
     packet.store(job->results);
   }

@@ -115,7 +115,7 @@ ProjectedRays project_layer(const Scene& scene, std::size_t index, const RenderO
   std::mutex progress_mutex;
   std::size_t done = 0;
   bool cancelled = false;
-  take_in_turn(rows, threads, [&](std::size_t row) {
+  parallel_for_ordered(rows, threads, [&](std::size_t row) {
     const auto workspace = projector->workspace();
     for (std::size_t column = 0; column < width; ++column) {
       const std::size_t ray = row * width + column;

@@ -46,7 +46,7 @@ std::vector<Integrals> integrate_to_nodes(const PiecewiseLinear<double>& transfe
   return sums;
 }
 
-constexpr int most_parts = 64;
+constexpr int max_parts = 64;
 constexpr double depth_of_part = 0.25;
 
 std::array<float, PreintegratedTable::fields> entry_of(const std::vector<Integrals>& to, int front,
@@ -58,7 +58,7 @@ std::array<float, PreintegratedTable::fields> entry_of(const std::vector<Integra
   };
   const double depth = std::fabs(at(1, 1).extinction - at(0, 1).extinction) * step_per_value;
   const int parts =
-      std::min({distance, most_parts, 1 + static_cast<int>(std::min(depth / depth_of_part, 1e3))});
+      std::min({distance, max_parts, 1 + static_cast<int>(std::min(depth / depth_of_part, 1e3))});
   double transparency = 1, opacity = 0;
   Rgb<double> radiance{};
   for (int n = 0; n < parts; ++n) {

@@ -187,7 +187,7 @@ void SampledPath::find_crossings(double begin, double end) {
                   surfaces_.begin() + static_cast<std::ptrdiff_t>(next_surface_));
   next_surface_ = 0;
   for (const auto& layer : layers_) {
-    const LayerLook& look = layer->source.look();
+    const LayerAppearance& look = layer->source.look();
     if (look.isosurfaces().empty() || !layer->holds(begin, end)) continue;
     LayerPoint& front = layer->side;
     if (layer->side_at != begin) layer->points->find(begin, front);
@@ -355,7 +355,7 @@ void SampledPath::add_material(std::size_t layer, LayerPoint& point, double t,
 /// Weakens a layer's extinction and lights its color by what is at a point.
 void SampledPath::light_up_point(std::size_t layer, LayerPoint& point, double t,
                                  Material<double>& material) const {
-  const LayerLook& look = layers_[layer]->source.look();
+  const LayerAppearance& look = layers_[layer]->source.look();
   layers_[layer]->points->find_gradients(point);
   if (const PiecewiseLinear<double>* const factor = look.extinction_factor()) {
     material.extinction *= factor->evaluate(point.factor_argument).extinction;

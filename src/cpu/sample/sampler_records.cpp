@@ -9,7 +9,7 @@
 namespace pellucid {
 namespace {
 
-constexpr int fewest_bins = 1024, most_bins = 8192;
+constexpr int fewest_bins = 1024, max_bins = 8192;
 
 /// So many bins, that control points at equal distances, as most of a tabulated function are, lie
 /// between them.
@@ -23,7 +23,7 @@ int count_bins(const PiecewiseLinear<float>& table, double range) {
   std::nth_element(gap.begin(), gap.begin() + static_cast<std::ptrdiff_t>(gap.size() / 2),
                    gap.end());
   const double gaps = std::max(1.0, std::round(range / gap[gap.size() / 2]));
-  if (gaps > 0.5 * most_bins) return most_bins;
+  if (gaps > 0.5 * max_bins) return max_bins;
   return static_cast<int>(gaps * std::ceil(fewest_bins / gaps));
 }
 
@@ -95,7 +95,7 @@ SamplerRecords::SamplerRecords(const PiecewiseLinear<float>& table) {
     lines_.insert(lines_.end(), line.begin(), line.end());
   }
   add_corners(table, bins, width);
-  view_.corners = corners_.data();
+  view_.breakpoints = breakpoints_.data();
   view_.bins = bins_.data();
   view_.first_line = first_line_.data();
   view_.lines = lines_.data();
@@ -120,15 +120,16 @@ void SamplerRecords::add_corners(const PiecewiseLinear<float>& table, int bins, 
     const double all = largest_color * change(8) + double{table.material[i].extinction} * of_colors;
     return all * all;
   };
-  view_.few_corners = 0;
-  for (int i = 0; i < table.count && view_.few_corners <= SamplerTransfer::most_corners; ++i) {
+  view_.few_breakpoints = 0;
+  for (int i = 0; i < table.count && view_.few_breakpoints <= SamplerTransfer::max_breakpoints;
+       ++i) {
     const auto square = static_cast<float>(square_at(i));
     if (!(square > 0)) continue;
-    if (view_.few_corners < SamplerTransfer::most_corners) {
-      view_.corner[view_.few_corners] = table.value[i];
-      view_.square[view_.few_corners] = square;
+    if (view_.few_breakpoints < SamplerTransfer::max_breakpoints) {
+      view_.breakpoint[view_.few_breakpoints] = table.value[i];
+      view_.square[view_.few_breakpoints] = square;
     }
-    ++view_.few_corners;
+    ++view_.few_breakpoints;
   }
   double sum = 0;
   int i = 0;
@@ -136,8 +137,8 @@ void SamplerRecords::add_corners(const PiecewiseLinear<float>& table, int bins, 
     const double edge = double{table.value[0]} + b * width;
     while (i < table.count && (b == bins || double{table.value[i]} < edge)) sum += square_at(i++);
     const auto rounded = static_cast<float>(sum);
-    corners_.push_back(rounded);
-    corners_.push_back(std::isfinite(rounded) ? static_cast<float>(sum - double{rounded}) : 0);
+    breakpoints_.push_back(rounded);
+    breakpoints_.push_back(std::isfinite(rounded) ? static_cast<float>(sum - double{rounded}) : 0);
   }
 }
 

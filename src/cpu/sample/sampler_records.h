@@ -36,7 +36,7 @@ class SamplerRecords {
  private:
   void add_corners(const PiecewiseLinear<float>& table, int bins, double width);
 
-  std::vector<float> bins_, first_line_, lines_, corners_;
+  std::vector<float> bins_, first_line_, lines_, breakpoints_;
   SamplerTransfer view_;
 };
 

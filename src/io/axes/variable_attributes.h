@@ -20,7 +20,7 @@ struct VariableAttribute {
 
 /// The attributes of a variable by their names. Lists of more than 1024 numbers are left out.
 using VariableAttributes = std::map<std::string, VariableAttribute, std::less<>>;
-inline constexpr std::size_t most_attribute_numbers = 1024, longest_attribute_text = 65536;
+inline constexpr std::size_t max_attribute_numbers = 1024, longest_attribute_text = 65536;
 
 /// Returns an attribute's text; empty where there is none.
 inline std::string text_of(const VariableAttributes& attributes, std::string_view name) {

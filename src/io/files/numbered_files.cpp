@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view digits = "0123456789";
-constexpr std::size_t most_digits = 15;
+constexpr std::size_t max_digits = 15;
 
 /// Returns a number at a scale that all of its files share, as text.
 std::string scaled_text(std::int64_t value, int fraction_digits) {
@@ -99,9 +99,9 @@ std::optional<NameNumber> name_number(std::string_view text) {
     const std::string_view fraction = text.substr(dot + 1);
     if (fraction.empty()) return std::nullopt;
     all += fraction;
-    number.fraction_digits = static_cast<int>(std::min(fraction.size(), most_digits));
+    number.fraction_digits = static_cast<int>(std::min(fraction.size(), max_digits));
   }
-  if (all.size() > most_digits || all.find_first_not_of(digits) != std::string::npos) {
+  if (all.size() > max_digits || all.find_first_not_of(digits) != std::string::npos) {
     return std::nullopt;
   }
   number.mantissa = std::stoll(all) * (is_negative ? -1 : 1);

@@ -30,7 +30,7 @@ std::vector<std::string> texts_at(hid_t attribute) {
   const Id type(H5Aget_type(attribute), H5Tclose, "an attribute");
   const std::size_t count = entries_of(attribute);
   std::vector<std::string> texts;
-  if (H5Tget_class(type.get()) != H5T_STRING || count == 0 || count > most_attribute_numbers) {
+  if (H5Tget_class(type.get()) != H5T_STRING || count == 0 || count > max_attribute_numbers) {
     return texts;
   }
   const Id space(H5Aget_space(attribute), H5Sclose, "an attribute");
@@ -70,7 +70,7 @@ std::optional<VariableAttribute> read_attribute(hid_t dataset, const char* name)
     if (!texts.empty()) read.text = std::move(texts.front());
     return read;
   }
-  if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || count > most_attribute_numbers) {
+  if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || count > max_attribute_numbers) {
     return std::nullopt;
   }
   read.is_real = kind == H5T_FLOAT;
@@ -254,17 +254,17 @@ std::optional<std::pair<hsize_t, hsize_t>> written_chunks(hid_t dataset, hid_t h
 /// Called by HDF5, through which no exception may pass. Links to elsewhere are not followed.
 herr_t take_link_name(hid_t, const char* name, const H5L_info_t* about, void* to) noexcept {
   auto& names = *static_cast<std::vector<std::string>*>(to);
-  constexpr std::size_t most_names = 4096;
-  if (about->type == H5L_TYPE_HARD && names.size() < most_names) names.emplace_back(name);
+  constexpr std::size_t max_names = 4096;
+  if (about->type == H5L_TYPE_HARD && names.size() < max_names) names.emplace_back(name);
   return 0;
 }
 
 /// Returns the sides of a dataset; nothing where it has none, or more than eight.
 std::optional<std::vector<std::int64_t>> sides_of(hid_t dataset) {
   const Id space(H5Dget_space(dataset), H5Sclose, "the axes of a dataset");
-  constexpr int most_axes = 8;
+  constexpr int max_axes = 8;
   const int rank = H5Sget_simple_extent_ndims(space.get());
-  if (rank < 0 || rank > most_axes || H5Sget_simple_extent_type(space.get()) == H5S_NULL) {
+  if (rank < 0 || rank > max_axes || H5Sget_simple_extent_type(space.get()) == H5S_NULL) {
     return std::nullopt;
   }
   std::vector<hsize_t> sides(static_cast<std::size_t>(rank));

@@ -75,10 +75,10 @@ VtkHdfArray describe(hid_t group, const std::string& name, VtkHdfArray::Place pl
   const Id space(H5Dget_space(dataset.get()), H5Sclose, "the axes of a dataset");
   const Id type(H5Dget_type(dataset.get()), H5Tclose, "the type of a dataset");
   const int rank = H5Sget_simple_extent_ndims(space.get());
-  constexpr int most_axes = 4;
+  constexpr int max_axes = 4;
   std::optional<std::string> kept = type_of(type.get());
   if (kept && is_stored_only(*kept)) kept = "f64";
-  if (!kept || rank < 1 || rank > most_axes) {
+  if (!kept || rank < 1 || rank > max_axes) {
     array.fault = kept ? "an array of " + std::to_string(rank) + " axes" : "no array of numbers";
     return array;
   }

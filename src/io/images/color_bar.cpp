@@ -20,7 +20,7 @@ namespace {
 
 constexpr Module cairo{"pellucid_cairo.so", "draws color bars", "Cairo (Debian: libcairo2-dev)"};
 /// Labels that a legend names; of more it says how many.
-constexpr std::size_t most_entries = 12;
+constexpr std::size_t max_entries = 12;
 /// Colors of a bar, and the optical depth that its strip of opacity shows the densest value with.
 constexpr int samples = 1024;
 constexpr double depth_shown = 3;
@@ -52,7 +52,7 @@ void add_labels(const LabelTable& table, const LabelVolume& labels, ColorBar& ba
   std::size_t left_out = 0;
   for (const LabelStyle& style : table.styles()) {
     if (!(style.extinction > 0) || there.count(style.label) == 0) continue;
-    if (bar.entries.size() == most_entries) {
+    if (bar.entries.size() == max_entries) {
       ++left_out;
       continue;
     }

@@ -215,7 +215,7 @@ void merge_points(const std::vector<std::size_t>& first, MeshFile& file) {
   // lose a corner.
   std::vector<std::size_t> taken(grid.points.size(), 0);
   // So many blocks meet in no point of a real mesh; hostile ones are not to take hours.
-  constexpr int most_candidates = 64;
+  constexpr int max_candidates = 64;
   for (std::size_t block = 0; block + 1 < first.size(); ++block) {
     const std::size_t begin = first[block], end = first[block + 1];
     for (std::size_t i = begin; i < end; ++i) {
@@ -223,7 +223,7 @@ void merge_points(const std::vector<std::size_t>& first, MeshFile& file) {
       if (block == 0) continue;
       const auto [from, to] = known.equal_range(place_of(grid.points[i]));
       auto last = from;
-      for (int n = 0; n < most_candidates && last != to; ++n) ++last;
+      for (int n = 0; n < max_candidates && last != to; ++n) ++last;
       const auto same = std::find_if(from, last, [&](const auto& entry) {
         const auto other = static_cast<std::size_t>(entry.second);
         return taken[other] != block && same_values(grid, other, i);

@@ -39,13 +39,13 @@ void read_attribute(int group, int id, const char* name, VariableAttributes& att
     attribute.text.resize(count);
     if (nc_get_att_text(group, id, name, attribute.text.data()) != NC_NOERR) return;
   } else if (type == NC_STRING) {
-    if (count == 0 || count > most_attribute_numbers) return;
+    if (count == 0 || count > max_attribute_numbers) return;
     std::vector<char*> texts(count, nullptr);
     if (nc_get_att_string(group, id, name, texts.data()) != NC_NOERR) return;
     if (texts[0] != nullptr) attribute.text = texts[0];
     nc_free_string(count, texts.data());
   } else if (type < NC_STRING) {
-    if (count > most_attribute_numbers) return;
+    if (count > max_attribute_numbers) return;
     attribute.numbers.resize(count);
     if (count > 0 && nc_get_att_double(group, id, name, attribute.numbers.data()) != NC_NOERR) {
       return;

@@ -79,14 +79,14 @@ std::int64_t points_of(const Dimensions& d) {
 /// Returns the dimensions of the blocks where the file's head can be read so; the reader then
 /// stands behind them.
 std::optional<std::vector<Dimensions>> read_head(Reader& file, const Layout& layout) {
-  constexpr int most_blocks = 1 << 20;
+  constexpr int max_blocks = 1 << 20;
   file.go_to(0);
   int blocks = 1;
   if (layout.several) {
     file.go_to(layout.mark());
     if (!file.has(4)) return std::nullopt;
     blocks = file.integer(layout.big_endian);
-    if (blocks < 1 || blocks > most_blocks) return std::nullopt;
+    if (blocks < 1 || blocks > max_blocks) return std::nullopt;
     file.go_to(file.at() + layout.mark());
   }
   file.go_to(file.at() + layout.mark());

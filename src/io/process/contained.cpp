@@ -39,11 +39,11 @@ struct Outcome {
 /// program is in them at that moment: it waits forever, and is begun anew.
 constexpr bool is_sanitized = true;
 constexpr unsigned patience = 20;  // seconds
-constexpr int most_children = 6;
+constexpr int max_children = 6;
 #else
 constexpr bool is_sanitized = false;
 constexpr unsigned patience = 300;
-constexpr int most_children = 1;
+constexpr int max_children = 1;
 #endif
 
 /// Memory that two processes see.
@@ -191,7 +191,7 @@ bool come_to_an_end(const std::function<bool()>& work, const Limits& limits) {
     static_assert(alignof(Outcome) == 1);
     auto& outcome = *reinterpret_cast<Outcome*>(shared.get());
     const int status = run_in_child(work, limits, outcome);
-    if (n < most_children && WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) continue;
+    if (n < max_children && WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) continue;
     if (outcome.is == Outcome::error) {
       outcome.message[Outcome::longest] = '\0';
       throw Error(outcome.message);

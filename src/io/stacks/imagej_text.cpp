@@ -20,7 +20,7 @@ namespace pellucid {
 
 namespace {
 
-constexpr std::int64_t most_planes = std::numeric_limits<int>::max();
+constexpr std::int64_t max_planes = std::numeric_limits<int>::max();
 
 using Lines = std::map<std::string, std::string, std::less<>>;
 
@@ -57,7 +57,7 @@ std::optional<std::int64_t> count_in(const std::string& word, std::string_view k
                                      const std::string& name) {
   if (word.empty()) return std::nullopt;
   const std::optional<double> value = number_in(word);
-  if (!value || *value < 1 || *value > static_cast<double>(most_planes) ||
+  if (!value || *value < 1 || *value > static_cast<double>(max_planes) ||
       *value != std::floor(*value)) {
     throw Error(name + ": its description says " + std::string(key) + "=" + printable(word) +
                 ", which is no number of pages; mend the description");

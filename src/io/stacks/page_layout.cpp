@@ -41,8 +41,8 @@ class Layout {
     for (const FilePages& file : files) pages_ += std::ssize(file.directories);
     complete_axes();
     // Products of what comes are then no larger than numbers can be.
-    constexpr std::int64_t most_planes = std::int64_t{1} << 40;
-    if (plane_count(axes_) > most_planes) {
+    constexpr std::int64_t max_planes = std::int64_t{1} << 40;
+    if (plane_count(axes_) > max_planes) {
       fail("but the file has " + pages_text(pages_) + "; mend the description");
     }
     layout_.slices = size_of('z');

@@ -22,13 +22,13 @@ using scene_json::Node;
 
 namespace {
 
-constexpr std::size_t most_axes = 32;
+constexpr std::size_t max_axes = 32;
 
 using Shape = std::vector<std::int64_t>;
 
 Shape shape_in(const Node& list) {
   Shape shape;
-  if (list.array_size() > most_axes) list.fail("has more than 32 axes");
+  if (list.array_size() > max_axes) list.fail("has more than 32 axes");
   for (std::size_t i = 0; i < list.array_size(); ++i) {
     shape.push_back(list.element(i).integer(1, std::numeric_limits<int>::max()));
   }
@@ -39,7 +39,7 @@ Shape shape_in(const Node& list) {
 std::string letters_in(const Node& axes) {
   if (axes.is_string()) return in_small_letters(axes.string());
   std::string letters;
-  if (!axes.is_array() || axes.array_size() > most_axes) return letters;
+  if (!axes.is_array() || axes.array_size() > max_axes) return letters;
   for (std::size_t i = 0; i < axes.array_size(); ++i) {
     const Node axis = axes.element(i);
     const auto key = axis.is_object() ? axis.find("key") : axis;

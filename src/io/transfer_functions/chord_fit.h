@@ -41,15 +41,14 @@ class ChordFit {
   /// are cut. Where the largest opacity is above 1, opacities are extinctions, and the ratio is
   /// theirs.
   ChordFit(const Curves& curves, double color, double depth, std::string format,
-           double largest_color = 1, double largest_opacity = 1,
-           std::size_t most_points = 1'000'000)
+           double largest_color = 1, double largest_opacity = 1, std::size_t max_points = 1'000'000)
       : curves_(curves),
         color_limit_(color),
         depth_limit_(depth),
         format_(std::move(format)),
         largest_color_(largest_color),
         largest_opacity_(largest_opacity),
-        most_points_(most_points) {}
+        most_points_(max_points) {}
 
   std::vector<OpacityPoint> points() {
     // Beyond the ends the function is constant, and may begin or end with a jump.

@@ -18,9 +18,9 @@ void check_order(const std::vector<Node>& nodes, const std::string& where, const
 }
 
 void check_count(std::size_t count, const std::string& where, const char* what) {
-  if (count <= most_nodes) return;
+  if (count <= max_nodes) return;
   throw Error(where + ": has " + std::to_string(count) + " " + what + ", but at most " +
-              std::to_string(most_nodes) + " are read");
+              std::to_string(max_nodes) + " are read");
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ struct GaussianNode {
 enum class ColorSpace { rgb, hsv, hsv_without_wrap, lab, diverging, step, way };
 
 /// The largest number of nodes of a file.
-inline constexpr std::size_t most_nodes = 100'000;
+inline constexpr std::size_t max_nodes = 100'000;
 /// The largest number of Gaussians, of which each is looked at at every value.
 inline constexpr std::size_t max_gaussians = 100;
 

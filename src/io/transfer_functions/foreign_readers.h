@@ -28,7 +28,7 @@ double share(const Node& node);
 Rgb<double> color(const Node& node);
 /// [value, …] of four numbers a node: vtkPiecewiseFunction's x, y, midpoint, sharpness.
 std::vector<OpacityNode> opacity_nodes(const Node& flat);
-/// Colors and opacities in ascending order, each at most most_nodes, at least one of each. A
+/// Colors and opacities in ascending order, each at most max_nodes, at least one of each. A
 /// function without opacities gets a ramp from 0 to 1 over its colors, one without colors white,
 /// and a note says so. `where` opens the messages.
 void complete(Function& function, const std::string& where);

@@ -18,7 +18,7 @@ constexpr double farthest = 2e37;
 /// Relative rounding of the ends of intervals, and of VTK's own arithmetic.
 constexpr double rounding = 1e-13;
 /// Points of one function. What is finer is fitted more coarsely, and told.
-constexpr std::size_t most_points = 200'000;
+constexpr std::size_t max_points = 200'000;
 /// Places at which a curve is compared with VTK's own function.
 constexpr std::size_t compared_places = 256;
 
@@ -186,7 +186,7 @@ class Fitter {
     const Curves curves(function);
     for (double limit = deviation_;; limit *= 64) {
       ChordFit<Curves> chords(curves, limit, limit, function.format, given_.largest,
-                              largest_opacity, most_points);
+                              largest_opacity, max_points);
       try {
         take(chords);
       } catch (const Error&) {

@@ -70,8 +70,8 @@ Rows read_rows(std::string_view text, const std::string& name) {
                   " numbers; a color table has rows r,g,b or r,g,b,a, or behind a header \"value\" "
                   "these after a value, all alike");
     }
-    if (table.rows.size() == most_nodes) {
-      throw Error(name + ": has more than " + std::to_string(most_nodes) + " rows");
+    if (table.rows.size() == max_nodes) {
+      throw Error(name + ": has more than " + std::to_string(max_nodes) + " rows");
     }
     table.rows.push_back(std::move(numbers));
     table.lines.push_back(line);

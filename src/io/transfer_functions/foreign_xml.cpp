@@ -172,7 +172,7 @@ Function read_visit(Scanner& scanner, Tag tag, const std::string& name) {
         function.gaussians.push_back(visit_gaussian(fields, where));
       }
       if (object == "ColorControlPoint") function.colors.push_back(visit_color(fields, where));
-      if (function.gaussians.size() > max_gaussians || function.colors.size() > most_nodes) {
+      if (function.gaussians.size() > max_gaussians || function.colors.size() > max_nodes) {
         throw Error(where + ": too many control points");
       }
       object = {};

@@ -17,7 +17,7 @@ using scene_json::Node;
 
 namespace {
 
-constexpr std::size_t most_axes = 32, most_levels = 64, most_names = 4096;
+constexpr std::size_t max_axes = 32, max_levels = 64, max_names = 4096;
 constexpr int deepest_sequence = 8;
 
 std::string text_of(const Node& node, const char* key) {
@@ -26,7 +26,7 @@ std::string text_of(const Node& node, const char* key) {
 }
 
 std::vector<OmeAxis> axes_of(const Node& list) {
-  if (list.array_size() > most_axes) list.fail("lists more than 32 axes");
+  if (list.array_size() > max_axes) list.fail("lists more than 32 axes");
   std::vector<OmeAxis> axes;
   for (std::size_t i = 0; i < list.array_size(); ++i) {
     const Node axis = list.element(i);
@@ -94,7 +94,7 @@ std::vector<std::string> channels_of(const Node& ome) {
   const auto omero = ome.find("omero");
   const auto list = omero ? omero->find("channels") : std::nullopt;
   if (!list || !list->is_array()) return names;
-  for (std::size_t i = 0; i < list->array_size() && i < most_names; ++i) {
+  for (std::size_t i = 0; i < list->array_size() && i < max_names; ++i) {
     names.push_back(text_of(list->element(i), "label"));
   }
   return names;
@@ -123,7 +123,7 @@ std::optional<OmeImage> parse_ome_image(const Node& attributes) {
   }
   const Node datasets = multiscale.at("datasets", "list the levels");
   if (datasets.array_size() == 0) datasets.fail("lists no level");
-  if (datasets.array_size() > most_levels) datasets.fail("lists more than 64 levels");
+  if (datasets.array_size() > max_levels) datasets.fail("lists more than 64 levels");
   for (std::size_t i = 0; i < datasets.array_size(); ++i) {
     const Node dataset = datasets.element(i);
     OmeLevel level;

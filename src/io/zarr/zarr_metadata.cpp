@@ -25,12 +25,12 @@ using scene_json::Node;
 
 namespace {
 
-constexpr std::size_t most_axes = 32;
+constexpr std::size_t max_axes = 32;
 constexpr std::int64_t longest_axis = std::int64_t{1} << 52;
 constexpr std::size_t deepest_shards = 4;
 
 std::vector<std::int64_t> sides_of(const Node& list, std::int64_t least) {
-  if (list.array_size() > most_axes) list.fail("has more than 32 numbers");
+  if (list.array_size() > max_axes) list.fail("has more than 32 numbers");
   std::vector<std::int64_t> sides;
   for (std::size_t i = 0; i < list.array_size(); ++i) {
     sides.push_back(list.element(i).integer(least, longest_axis));
@@ -278,10 +278,10 @@ std::vector<std::size_t> transposition(const Node& settings, std::size_t axes) {
 }
 
 ZarrChain parse_chain(const Node& list, const ZarrType& type, std::size_t axes, std::size_t depth) {
-  constexpr std::size_t most_codecs = 16;
+  constexpr std::size_t max_codecs = 16;
   ZarrChain chain;
   chain.order = straight(axes);
-  if (list.array_size() > most_codecs) list.fail("has more than 16 codecs");
+  if (list.array_size() > max_codecs) list.fail("has more than 16 codecs");
   bool has_bytes = false;
   for (std::size_t i = 0; i < list.array_size(); ++i) {
     const Node codec = list.element(i);
@@ -369,8 +369,8 @@ ZarrArray parse_zarr_2(const Node& metadata) {
     std::ranges::reverse(array.chain.order);
   }
   if (const auto filters = metadata.find("filters"); filters && !filters->is_null()) {
-    constexpr std::size_t most_filters = 16;
-    if (filters->array_size() > most_filters) filters->fail("has more than 16 filters");
+    constexpr std::size_t max_filters = 16;
+    if (filters->array_size() > max_filters) filters->fail("has more than 16 filters");
     for (std::size_t i = 0; i < filters->array_size(); ++i) {
       add_codec(filters->element(i), array.type, array.chain);
     }

@@ -70,7 +70,7 @@ void add_number(const nlohmann::json& value, VariableAttribute& attribute) {
 std::optional<VariableAttribute> attribute_of(const nlohmann::json& value) {
   VariableAttribute attribute;
   if (value.is_array()) {
-    if (value.size() > most_attribute_numbers) return VariableAttribute{};
+    if (value.size() > max_attribute_numbers) return VariableAttribute{};
     for (const nlohmann::json& element : value) add_number(element, attribute);
     if (attribute.numbers.size() != value.size()) return VariableAttribute{};
     return attribute;
@@ -153,11 +153,11 @@ std::vector<ArrayBeside> arrays_beside(const ZarrVariable& variable) {
   }
   std::error_code error;
   int count = 0;
-  constexpr int most_arrays = 4096;
+  constexpr int max_arrays = 4096;
   for (fs::directory_iterator entry(own.parent_path(), error), end; !error && entry != end;
        entry.increment(error)) {
     const fs::path folder = entry->path().lexically_normal();
-    if (++count > most_arrays) break;
+    if (++count > max_arrays) break;
     if (!entry->is_directory(error) || std::ranges::find(known, folder) != known.end()) continue;
     try {
       const auto node = read_zarr_node(folder);

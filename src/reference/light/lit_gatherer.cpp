@@ -13,7 +13,7 @@ constexpr double deepest = 1;
 constexpr double tolerance = 1e-12;
 /// Number of halvings after which a function that does not settle is discontinuous, on a part of
 /// 1e-12 of a piece.
-constexpr int most_halvings = 40;
+constexpr int max_halvings = 40;
 
 MixtureSamples samples_of(const std::vector<LitPart>& layers) {
   MixtureSamples result;
@@ -80,7 +80,7 @@ void LitGatherer::add(const Panel& panel, int halvings) {
     return;
   }
   const auto [front, back] = halves(panel);
-  if (halvings >= most_halvings || (is_seen && agree(panel, front, back))) {
+  if (halvings >= max_halvings || (is_seen && agree(panel, front, back))) {
     add_whole(front);
     add_whole(back);
     return;

@@ -21,7 +21,7 @@ float above(double x) {
 
 /// Returns the indices of the points that are left of a curve through (value, curves[c]) when those
 /// go that lie on the line between their neighbours that stay; both points of a jump stay.
-std::vector<int> corners(const PiecewiseLinear<double>& table, const auto& curves_at) {
+std::vector<int> breakpoints(const PiecewiseLinear<double>& table, const auto& curves_at) {
   std::vector<int> kept{0};
   constexpr std::size_t channels = std::tuple_size_v<decltype(curves_at(0))>;
   std::array<double, channels> least{}, most{};
@@ -95,13 +95,13 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     largest_extinction = std::max(largest_extinction, m.extinction);
     largest_color = std::max({largest_color, m.color.r, m.color.g, m.color.b});
   }
-  const std::vector<int> at_extinction =
-      corners(table, [&](int i) { return std::array<double, 1>{table.material[i].extinction}; });
+  const std::vector<int> at_extinction = breakpoints(
+      table, [&](int i) { return std::array<double, 1>{table.material[i].extinction}; });
   const std::vector<int> at_color =
-      corners(table, [&](int i) { return components(table.material[i].color); });
+      breakpoints(table, [&](int i) { return components(table.material[i].color); });
 
   // Intervals of the extinction.
-  const auto slope_of = [&](std::size_t i) {  // between corners i - 1 and i
+  const auto slope_of = [&](std::size_t i) {  // between breakpoints i - 1 and i
     if (i == 0 || i == at_extinction.size()) return 0.0;
     const int a = at_extinction[i - 1], b = at_extinction[i];
     const double width = table.value[b] - table.value[a];
@@ -178,7 +178,7 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
     for (const std::size_t k : {i - 1, i, i + 1}) jump_[k] = std::max(jump_[k], above(shown));
   }
 
-  // Beside a corner rounding may take a color from there, too.
+  // Beside a breakpoint rounding may take a color from there, too.
   const auto color_slope_of = [&](std::size_t i) -> float& {
     return extinction_[(i + 1) * BinnedTransfer::extinction_fields - 1];
   };
@@ -270,7 +270,7 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
       return color_[static_cast<std::size_t>(interval) * BinnedTransfer::color_fields + 1];
     };
     color_split_.push_back(upper_of(color_interval));
-    // The last interval ends at no corner.
+    // The last interval ends at no breakpoint.
     const bool has_next = static_cast<std::size_t>(color_interval) + 1 < at_color.size();
     if (has_next && static_cast<double>(upper_of(color_interval + 1)) <= upper) {
       view_.has_full_bins = true;
@@ -304,7 +304,7 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
                       table.material[i].color == table.material[i - 1].color))) {
       mark_jump(table.value[i - 1], table.value[i], is_hard);
     }
-    // No piece goes across a corner of the extinction.
+    // No piece goes across a breakpoint of the extinction.
     const bool is_cut = std::binary_search(at_extinction.begin(), at_extinction.end(), i);
     if (!in_front || !behind || is_cut) continue;
     double change = 0;
@@ -329,7 +329,7 @@ BinnedTransferStorage::BinnedTransferStorage(const PiecewiseLinear<double>& tabl
   color_slope_change_.push_back(static_cast<float>(bends));
   // Of either sum, of their difference, and what colors of less than `flat` leave out.
   view_.color_slope_change_rounding = above(4 * unit * bends);
-  view_.bends = bends > 0;
+  view_.has_color_breakpoints = bends > 0;
 
   // Bins that absorb are one run, and none of them holds a jump.
   int runs = 0;

@@ -66,21 +66,23 @@ class BlockGroups {
 struct GroupVariation {
   /// A derivative has to swing by that many times of what it changes in one cell: so it does in
   /// waves of nine cells, for which it takes π of them along a third of the wave.
-  static constexpr double least_steps = 3;
+  static constexpr double min_steps = 3;
 
-  float oscillation[3] = {}, bend[3] = {}, twist[3] = {};  ///< as in BlockRecord
+  float oscillation[3] = {}, second_difference[3] = {}, twist[3] = {};  ///< as in BlockRecord
 
   void add(const BlockRecord& record) noexcept {
     for (int a = 0; a < 3; ++a) {
       oscillation[a] = std::max(oscillation[a], from_upper_half(record.oscillation[a]));
-      bend[a] = std::max(bend[a], from_upper_half(record.bend[a]));
+      second_difference[a] =
+          std::max(second_difference[a], from_upper_half(record.second_difference[a]));
       twist[a] = std::max(twist[a], from_upper_half(record.twist[a]));
     }
   }
 
   /// Returns the most that a derivative changes in a cell.
   double most_change() const noexcept {
-    return static_cast<double>(std::max({bend[0], bend[1], bend[2], twist[0], twist[1], twist[2]}));
+    return static_cast<double>(std::max({second_difference[0], second_difference[1],
+                                         second_difference[2], twist[0], twist[1], twist[2]}));
   }
 
   /// Returns the number of cells in which the derivative swings from one end of its range to the
@@ -91,7 +93,7 @@ struct GroupVariation {
     constexpr float negligible = 0x1p-10f;
     std::array<float, 3> change{};
     for (std::size_t a = 0; a < 3; ++a) {
-      change[a] = std::max({bend[a], twist[(a + 1) % 3], twist[(a + 2) % 3]});
+      change[a] = std::max({second_difference[a], twist[(a + 1) % 3], twist[(a + 2) % 3]});
     }
     const float largest = std::max({change[0], change[1], change[2]});
     double least = std::numeric_limits<double>::infinity();

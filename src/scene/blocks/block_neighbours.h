@@ -16,11 +16,11 @@ template <class Record, class Join>
 void join_with_neighbours(const BlockRecords& blocks, const ParallelFor& parallel,
                           std::size_t fields, std::vector<Record>& records, const Join& join) {
   // Records that lie side by side and have the same place along the axis, at most so many at once.
-  constexpr std::size_t most_at_once = 1024;
+  constexpr std::size_t max_at_once = 1024;
   std::size_t stride = fields;
   for (const GridAxis<double>& axis : blocks.axis) {
     const auto along = static_cast<std::size_t>(axis.cells());
-    const std::size_t width = std::min(stride, most_at_once), parts = (stride + width - 1) / width,
+    const std::size_t width = std::min(stride, max_at_once), parts = (stride + width - 1) / width,
                       lines = records.size() / (stride * along);
     parallel(static_cast<int>(lines * parts), [&](int first, int last) {
       std::vector<Record> before(width);  // as they were

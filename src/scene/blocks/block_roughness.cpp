@@ -14,7 +14,7 @@ namespace pellucid {
 BlockRoughness::BlockRoughness(const BlockCode& code, const TransferTables& transfer,
                                double largest_color, const ParallelFor& parallel)
     : code_(code), largest_color_(std::max(largest_color, 1.0)) {
-  while ((std::max(code.last - 1, 0) >> shift_) >= most_bins) ++shift_;
+  while ((std::max(code.last - 1, 0) >> shift_) >= max_bins) ++shift_;
   bins_ = static_cast<std::size_t>(std::max(code.last - 1, 0) >> shift_) + 1;
   runs_.emplace_back(bins_);
   std::vector<Slopes> slopes(bins_);

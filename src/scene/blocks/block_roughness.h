@@ -31,7 +31,7 @@ class BlockRoughness {
   Range operator()(int lower, int upper) const noexcept;
 
  private:
-  static constexpr int most_bins = 4096;
+  static constexpr int max_bins = 4096;
 
   /// Extinction and the channels of the color.
   static constexpr std::size_t curves = 4;

@@ -29,7 +29,8 @@ struct Candidates {
   /// Returns the largest product of roughness and second difference.
   double max_second_difference() const noexcept {
     return static_cast<double>(sampled.roughness) *
-           static_cast<double>(std::max({data.bend[0], data.bend[1], data.bend[2]}));
+           static_cast<double>(std::max(
+               {data.second_difference[0], data.second_difference[1], data.second_difference[2]}));
   }
 };
 
@@ -53,7 +54,7 @@ SmoothBlocks find_smooth_blocks(const BlockRecords& records, std::vector<Sampled
     const auto its_roughness = static_cast<double>(candidates.sampled.roughness);
     const double steps = candidates.data.steps(),
                  of_function = cells_by_eighth * static_cast<double>(candidates.sampled.steps);
-    if (its_roughness < 0 || !(steps >= GroupVariation::least_steps) ||
+    if (its_roughness < 0 || !(steps >= GroupVariation::min_steps) ||
         !(of_function >= least_of_function) ||
         !(candidates.max_second_difference() <= limits.max_second_difference)) {
       return;
@@ -63,14 +64,15 @@ SmoothBlocks find_smooth_blocks(const BlockRecords& records, std::vector<Sampled
       classes[b].kind = BlockKind::smooth;
       float* const out = local.data() + fields * static_cast<std::size_t>(b);
       for (std::size_t a = 0; a < 3; ++a) {
-        out[a] = its.roughness * from_upper_half(records[b].bend[a]);
+        out[a] = its.roughness * from_upper_half(records[b].second_difference[a]);
       }
       out[3] = static_cast<float>(1 / longest);
     });
     all.longest_step = std::max(all.longest_step, longest);
     all.roughness = std::max(all.roughness, its_roughness);
     for (std::size_t a = 0; a < 3; ++a) {
-      all.bend[a] = std::max(all.bend[a], candidates.data.bend[a]);
+      all.second_difference[a] =
+          std::max(all.second_difference[a], candidates.data.second_difference[a]);
     }
   };
   parallel(groups.slabs(), [&](int first, int last) {
@@ -86,7 +88,7 @@ SmoothBlocks find_smooth_blocks(const BlockRecords& records, std::vector<Sampled
     all.longest_step = std::max(all.longest_step, slab.longest_step);
     all.roughness = std::max(all.roughness, slab.roughness);
     for (std::size_t a = 0; a < 3; ++a) {
-      all.bend[a] = std::max(all.bend[a], slab.bend[a]);
+      all.second_difference[a] = std::max(all.second_difference[a], slab.second_difference[a]);
     }
   }
   sampled = {};

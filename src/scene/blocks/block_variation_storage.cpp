@@ -18,7 +18,7 @@ constexpr std::uint16_t infinite = 0x7f80;
 void join_variation(BlockVariation& all, const BlockVariation& other) {
   for (std::size_t a = 0; a < 3; ++a) {
     all.oscillation[a] = std::max(all.oscillation[a], other.oscillation[a]);
-    all.bend[a] = std::max(all.bend[a], other.bend[a]);
+    all.second_difference[a] = std::max(all.second_difference[a], other.second_difference[a]);
   }
   all.twist = std::max(all.twist, other.twist);
 }
@@ -45,7 +45,7 @@ BlockVariationStorage::BlockVariationStorage(const Channels& channels,
         }
         variation_[static_cast<std::size_t>(b) * fields + c] = {
             {r.oscillation[0], r.oscillation[1], r.oscillation[2]},
-            {r.bend[0], r.bend[1], r.bend[2]},
+            {r.second_difference[0], r.second_difference[1], r.second_difference[2]},
             std::max({r.twist[0], r.twist[1], r.twist[2]}),
             0};
       }

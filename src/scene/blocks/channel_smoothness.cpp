@@ -49,7 +49,8 @@ class ChannelMovement {
     int stride = 1;
     for (std::size_t a = 0; a < 3; ++a) {
       if (at[a] > 0 && cells(a, at[a]) < block_width - 0.5) {
-        const double jump = std::max(bend(block, a), bend(block - stride, a));
+        const double jump =
+            std::max(second_difference(block, a), second_difference(block - stride, a));
         found = std::min(found, slope(block - stride) + jump + varies);
       }
       stride *= records_.axis[a].cells();
@@ -61,13 +62,13 @@ class ChannelMovement {
   /// derivative's jump from cell to cell being that along an axis, no eigenvalue is more than the
   /// largest sum over a row.
   double turn(int block) const noexcept {
-    const BlockBends bends = records_.bends(block);
+    const CurvatureBounds curvature = records_.curvature(block);
     double most = 0;
     for (std::size_t a = 0; a < 3; ++a) {
       const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
-      const double twists = static_cast<double>(bends.twist[c]) * width(b) +
-                            static_cast<double>(bends.twist[b]) * width(c);
-      most = std::max(most, bend(block, a) + width(a) * twists);
+      const double twists = static_cast<double>(curvature.twist[c]) * width(b) +
+                            static_cast<double>(curvature.twist[b]) * width(c);
+      most = std::max(most, second_difference(block, a) + width(a) * twists);
     }
     return most;
   }
@@ -85,8 +86,8 @@ class ChannelMovement {
     const GridAxis<double>& planes = records_.axis[axis];
     return (planes.plane(at + 1) - planes.plane(at)) / width(axis);
   }
-  double bend(int block, std::size_t axis) const noexcept {
-    return static_cast<double>(records_.bends(block).bend[axis]) * width(axis);
+  double second_difference(int block, std::size_t axis) const noexcept {
+    return static_cast<double>(records_.curvature(block).second_difference[axis]) * width(axis);
   }
 
   const BlockRecords& records_;
@@ -154,7 +155,7 @@ class SmoothnessOfChannels {
       }
       if (turned > least_turned) steps = std::min(steps, variation[c].steps());
     }
-    if (vacuum || !(steps >= GroupVariation::least_steps)) return;
+    if (vacuum || !(steps >= GroupVariation::min_steps)) return;
     each_candidate([&](int b) {
       const double its_steps = std::min(steps, resolving_steps(b));
       classes[b].kind = BlockKind::smooth;

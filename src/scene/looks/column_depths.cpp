@@ -11,7 +11,7 @@ namespace pellucid {
 namespace {
 
 /// Largest number of points of a line.
-constexpr int most_points = 256;
+constexpr int max_points = 256;
 
 std::size_t middle_of(int i, int parts, int n) {
   return static_cast<std::size_t>((2 * i + 1) * static_cast<std::int64_t>(n) / (2 * parts));
@@ -68,7 +68,7 @@ void Columns::add_slabs(const Volume& grid, std::size_t axis, int most_lines) {
   const double extent = length(grid.world_from_grid().matrix.column[axis] * size[a]);
   Slab slab;
   slab.size = {n[axis], n[fast]};
-  slab.count = {std::min(n[axis], most_points), std::min(n[fast], most_lines)};
+  slab.count = {std::min(n[axis], max_points), std::min(n[fast], most_lines)};
   slab.step = extent / slab.count[0];
   if (!slabs_.empty()) {
     const Slab& last = slabs_.back();

@@ -78,9 +78,9 @@ double share_between(const std::vector<double>& v, double lower, double upper) {
 /// Returns the value of air, if these are Hounsfield units, or those plus 1000 or 1024.
 std::optional<double> air_of(const std::vector<double>& v, const VolumeStatistics& range) {
   if (v.empty()) return std::nullopt;
-  constexpr double least_air = 0.05, most = 32767;
+  constexpr double min_air = 0.05, most = 32767;
   if (range.minimum <= -500 && range.minimum >= -32768 && range.maximum >= 300 &&
-      range.maximum <= most && share_between(v, -1100, -900) >= least_air) {
+      range.maximum <= most && share_between(v, -1100, -900) >= min_air) {
     return -1000;
   }
   // Twelve bits that begin at air, with soft tissue at about 1000 and hardly anything between the
@@ -91,8 +91,8 @@ std::optional<double> air_of(const std::vector<double>& v, const VolumeStatistic
   }
   const double air = share_between(v, 0, 150), tissue = share_between(v, 900, 1200);
   const double between = share_between(v, 300, 800);
-  return air >= least_air && tissue >= 0.1 && 3 * between < tissue ? std::optional(24.0)
-                                                                   : std::nullopt;
+  return air >= min_air && tissue >= 0.1 && 3 * between < tissue ? std::optional(24.0)
+                                                                 : std::nullopt;
 }
 
 /// Returns whether neighbors differ less by noise than by what the data are.

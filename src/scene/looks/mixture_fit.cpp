@@ -61,7 +61,7 @@ class Fitter {
  public:
   Fitter(const WeightedPoints& points, const std::vector<double>& floor)
       : points_(cells_of(points)),
-        cells_(merged_cells(points_, most_cells)),
+        cells_(merged_cells(points_, max_cells)),
         floor_(floor),
         n_(floor.size()),
         variance_(variance_of_all()) {
@@ -94,7 +94,7 @@ class Fitter {
   }
 
  private:
-  static constexpr std::size_t most_cells = 4096;
+  static constexpr std::size_t max_cells = 4096;
   static constexpr int ways = 8, first_steps = 24, most_steps = 400, most_last_steps = 20;
 
   const double* cell(std::size_t i) const { return &cells_.mean[i * n_]; }

@@ -101,8 +101,8 @@ class Boundaries {
     for (std::size_t j = 0; j < small_; ++j) {
       for (std::size_t i = 0; i < values_; ++i) counts[i] += count(i, j);
     }
-    constexpr double least_prominence = 0.3, least_share = 5e-4;
-    return value_peaks(counts, 0.008 * h_.axes[0].bins, least_prominence, least_share);
+    constexpr double min_prominence = 0.3, min_share = 5e-4;
+    return value_peaks(counts, 0.008 * h_.axes[0].bins, min_prominence, min_share);
   }
 
   /// Returns the gradients between two materials where they are the most common; no count where
@@ -117,8 +117,8 @@ class Boundaries {
       // Where gradients are the smallest there may be more of other materials than of boundaries.
       for (std::size_t j = small_ / 2; j < gradients_; ++j) sum += counts[j] += count(i, j);
     }
-    constexpr double least_prominence = 0.1, least_share = 0.1, least_of_all = 2e-4;
-    const auto ridges = value_peaks(counts, 0.012 * h_.axes[1].bins, least_prominence, least_share);
+    constexpr double min_prominence = 0.1, min_share = 0.1, least_of_all = 2e-4;
+    const auto ridges = value_peaks(counts, 0.012 * h_.axes[1].bins, min_prominence, min_share);
     if (ridges.empty() || sum < least_of_all * all_) return {};
     return *std::max_element(ridges.begin(), ridges.end(),
                              [](const auto& a, const auto& b) { return a.count < b.count; });

@@ -70,7 +70,7 @@ class Hills {
 }  // namespace
 
 std::vector<ValuePeak> value_peaks(const std::vector<double>& counts, double smoothing,
-                                   double least_prominence, double least_share) {
+                                   double min_prominence, double min_share) {
   const Hills hills(smooth(counts, smoothing));
   double all = 0;
   for (const double c : counts) all += c;
@@ -88,7 +88,7 @@ std::vector<ValuePeak> value_peaks(const std::vector<double>& counts, double smo
     const bool both = std::isfinite(a) && std::isfinite(b);
     peak.width = both ? (a + b) / 2 : std::min({a, b, static_cast<double>(hills.size())});
     for (int j = left; j <= right; ++j) peak.count += counts[static_cast<std::size_t>(j)];
-    if (peak.prominence >= least_prominence && peak.count >= least_share * all) {
+    if (peak.prominence >= min_prominence && peak.count >= min_share * all) {
       peaks.push_back(peak);
     }
   }

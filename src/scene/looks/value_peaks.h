@@ -16,6 +16,6 @@ struct ValuePeak {
 /// Returns the hills of counts that were smoothed by a Gaussian of `smoothing` bins, whose
 /// prominence is at least so large and that hold at least this share of all; ascending.
 std::vector<ValuePeak> value_peaks(const std::vector<double>& counts, double smoothing,
-                                   double least_prominence, double least_share);
+                                   double min_prominence, double min_share);
 
 }  // namespace pellucid

@@ -71,13 +71,13 @@ double volume_of(const TetrahedralMesh& mesh, const Tetrahedron& tetrahedron) {
 std::vector<double> value_sample(const MeshChannels& channels) {
   const TetrahedralMesh& mesh = channels.mesh();
   std::vector<double> sample;
-  sample.reserve(most_places);
-  const double every = mesh.statistics().volume / static_cast<double>(most_places);
+  sample.reserve(max_places);
+  const double every = mesh.statistics().volume / static_cast<double>(max_places);
   double next = every / 2, passed = 0;
   for (std::size_t t = 0; t < mesh.tetrahedra().size() && every > 0; ++t) {
     const Tetrahedron& tetrahedron = mesh.tetrahedra()[t];
     passed += volume_of(mesh, tetrahedron);
-    for (; next < passed && sample.size() < most_places; next += every) {
+    for (; next < passed && sample.size() < max_places; next += every) {
       double value = 0;
       if (channels[0].centering == Centering::cell) {
         value = channels.value(0, t);

@@ -168,8 +168,8 @@ void PolyhedronApex::orient_faces(const GridCell& cell) {
   turned_[0] = 0;
   // A few rounds for the faces of a body; what is left then is a chain without end.
   bool changed = true;
-  constexpr int most_rounds = 64;
-  for (int round = 0; changed && round < most_rounds; ++round) {
+  constexpr int max_rounds = 64;
+  for (int round = 0; changed && round < max_rounds; ++round) {
     changed = false;
     for (std::size_t e = 0; e + 1 < edges_.size(); e += 2) {
       const Edge &a = edges_[e], &b = edges_[e + 1];

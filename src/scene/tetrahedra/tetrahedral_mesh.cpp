@@ -18,7 +18,7 @@ namespace {
 
 constexpr double largest_coordinate = 2.1e37;
 /// The words of a tetrahedron are counted in 31 bits.
-constexpr std::size_t most_tetrahedra = std::size_t{1} << 28;
+constexpr std::size_t max_tetrahedra = std::size_t{1} << 28;
 
 std::int32_t number_of(const std::vector<std::int32_t>& numbers, std::size_t point) {
   return numbers.empty() ? static_cast<std::int32_t>(point) : numbers[point];
@@ -43,9 +43,9 @@ class Check {
 
   void counts() const {
     if (d_.tetrahedra.empty()) fail("there is no tetrahedron; a mesh needs at least one cell");
-    if (d_.tetrahedra.size() > most_tetrahedra) {
+    if (d_.tetrahedra.size() > max_tetrahedra) {
       fail(std::to_string(d_.tetrahedra.size()) + " tetrahedra are more than the " +
-           std::to_string(most_tetrahedra) + " that can be addressed; take a part of the mesh");
+           std::to_string(max_tetrahedra) + " that can be addressed; take a part of the mesh");
     }
     if (d_.points.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
       fail("more points than can be addressed; take a part of the mesh");

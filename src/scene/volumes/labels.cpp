@@ -16,7 +16,7 @@ namespace pellucid {
 namespace {
 
 /// Atlases of the mouse brain have some 700.
-constexpr std::size_t most_labels = 1000;
+constexpr std::size_t max_labels = 1000;
 
 template <class Value>
 bool is_whole(Value value) {
@@ -30,7 +30,7 @@ bool is_nan(Value value) {
   return false;
 }
 
-/// Different values, ascending, as long as all are whole and there are no more than most_labels.
+/// Different values, ascending, as long as all are whole and there are no more than max_labels.
 template <class Value>
 class DistinctValues {
  public:
@@ -42,7 +42,7 @@ class DistinctValues {
       last_ = value;
       const auto place = std::ranges::lower_bound(list_, value);
       if (place != list_.end() && *place == value) continue;
-      if (!is_whole(value) || list_.size() == most_labels) return false;
+      if (!is_whole(value) || list_.size() == max_labels) return false;
       list_.insert(place, value);
     }
     return true;
@@ -85,8 +85,8 @@ class NeighbourCounts {
     if (filled_values() < least_filled * static_cast<double>(equal_.size())) return false;
     // Smooth data step from value to value; of few values, neighbours are often next to each other.
     constexpr std::size_t few = 8;
-    constexpr double least_skipping = 0.25;
-    return equal_.size() <= few || static_cast<double>(skipping_) >= least_skipping * jumps;
+    constexpr double min_skipping = 0.25;
+    return equal_.size() <= few || static_cast<double>(skipping_) >= min_skipping * jumps;
   }
 
  private:
@@ -116,8 +116,8 @@ class SampledRows {
       : nx_(static_cast<std::size_t>(dimensions[0])),
         ny_(static_cast<std::size_t>(dimensions[1])),
         rows_(ny_ * static_cast<std::size_t>(dimensions[2])) {
-    constexpr std::size_t most_voxels = std::size_t{1} << 19;
-    taken_ = std::clamp<std::size_t>(most_voxels / nx_, 1, rows_);
+    constexpr std::size_t max_voxels = std::size_t{1} << 19;
+    taken_ = std::clamp<std::size_t>(max_voxels / nx_, 1, rows_);
   }
 
   std::size_t size() const { return taken_; }
@@ -158,7 +158,7 @@ std::optional<DistinctValues<Value>> find_labels(std::span<const Value> data,
   }
 
   NeighbourCounts counts(sampled.size());
-  constexpr std::size_t none = most_labels + 1;
+  constexpr std::size_t none = max_labels + 1;
   const auto fill_ranks = [&](std::size_t row, std::vector<std::size_t>& ranks) {
     const std::span<const Value> values = row_at(row);
     ranks.resize(values.size());

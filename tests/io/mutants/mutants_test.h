@@ -112,8 +112,8 @@ class MutantsTest : public ScratchFolder {
       }
 #ifndef PELLUCID_SANITIZED
       // Each call of a library that loops ends after some 3 s, and there are two of most files.
-      constexpr double most_seconds = 12;
-      if (seconds_of_children() - before > most_seconds) _exit(slow);
+      constexpr double max_seconds = 12;
+      if (seconds_of_children() - before > max_seconds) _exit(slow);
 #endif
     }
 #ifdef __SANITIZE_ADDRESS__

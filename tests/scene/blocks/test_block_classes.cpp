@@ -142,7 +142,7 @@ TEST(BlockClasses, AreThoseOfTheRanges) {
         if (random() % 8 == 0) r.flags = 1 + random() % 2;
         if (r.lower == r.upper && r.flags == 0) r.flags = BlockRecord::constant_bit;
         for (int a = 0; a < 3; ++a) {
-          r.bend[a] = upper_half_above(static_cast<double>(random() % 8));
+          r.second_difference[a] = upper_half_above(static_cast<double>(random() % 8));
           r.oscillation[a] = upper_half_above(static_cast<double>(random() % 24));
         }
       }

@@ -167,7 +167,7 @@ TEST(SmoothBlocksTest, LocalNumbersAreThoseOfTheBlocksAround) {
           if (!found.is_smooth(other)) continue;
           longest = 1;
           for (int a = 0; a < 3; ++a) {
-            bend[a] = std::max(bend[a], from_upper_half(records[other].bend[a]));
+            bend[a] = std::max(bend[a], from_upper_half(records[other].second_difference[a]));
           }
         }
         const float* const local = smooth.local + SmoothBlocks::fields * b;

@@ -65,7 +65,8 @@ TEST(BlockVariation, IsTheLargestAround) {
                   const bool vacuum = r.vacuum() != BlockVacuum::none;
                   const std::uint16_t slope = vacuum ? infinite : r.oscillation[a];
                   expected.oscillation[a] = std::max(expected.oscillation[a], slope);
-                  expected.bend[a] = std::max(expected.bend[a], vacuum ? infinite : r.bend[a]);
+                  expected.second_difference[a] = std::max(
+                      expected.second_difference[a], vacuum ? infinite : r.second_difference[a]);
                   expected.twist = std::max(expected.twist, vacuum ? infinite : r.twist[a]);
                 }
               }
@@ -75,7 +76,7 @@ TEST(BlockVariation, IsTheLargestAround) {
           for (const BlockVariation* found : {alone.data() + at, parallel.data() + at}) {
             for (std::size_t a = 0; a < 3; ++a) {
               EXPECT_EQ(found->oscillation[a], expected.oscillation[a]);
-              EXPECT_EQ(found->bend[a], expected.bend[a]);
+              EXPECT_EQ(found->second_difference[a], expected.second_difference[a]);
             }
             EXPECT_EQ(found->twist, expected.twist);
           }

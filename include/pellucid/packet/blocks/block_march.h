@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/packet/blocks/block_intervals.h"
 #include "pellucid/packet/blocks/lane_rays.h"
-#include "pellucid/packet/blocks/stretches.h"
 #include "pellucid/simd/batch.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -45,8 +45,8 @@ class BlockMarch {
   /// Finds the next stretches of the rays, until they are through, or come to a smooth one, or each
   /// has `most`, which is not more than may be. Adds 1 to `skipped` for each step over what is to
   /// be skipped.
-  [[gnu::flatten]] void find(Stretches<N>& stretches, I& skipped,
-                             int most = Stretches<N>::of_a_ray) noexcept {
+  [[gnu::flatten]] void find(BlockIntervals<N>& stretches, I& skipped,
+                             int most = BlockIntervals<N>::of_a_ray) noexcept {
     stretches.count = 0;
     smooth = M(false);
     I found(0);
@@ -101,7 +101,7 @@ class BlockMarch {
 
   /// Takes a lane back to a stretch that was taken for one of a single material, to be gone through
   /// cell by cell.
-  void go_back(int lane, const Stretches<N>& stretches, int stretch) noexcept {
+  void go_back(int lane, const BlockIntervals<N>& stretches, int stretch) noexcept {
     const M only = M::from_bits(1u << lane);
     I block[3];
     for (int a = 0; a < 3; ++a) block[a] = I(stretches.block[a][stretch]);

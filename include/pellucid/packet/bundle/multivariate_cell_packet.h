@@ -22,19 +22,19 @@ class MultivariateCellPacket {
   using M = BatchMask<N>;
   using Cells = MultichannelCells<N>;
   using Panels = PanelLanes<N, CubicBernstein, NodePanels<N>>;
-  using Room = typename Panels::Room;
+  using Workspace = typename Panels::Workspace;
 
-  MultivariateCellPacket(const PellucidGaussianPacketJob& job, const PacketGrid& grid, Room& room,
-                         int first, int count) noexcept
+  MultivariateCellPacket(const PellucidGaussianPacketJob& job, const PacketGrid& grid,
+                         Workspace& workspace, int first, int count) noexcept
       : job_(job),
         rays_(job.grid_and_rays),
         mixture_(*seen(job.near)),
-        rows_(room.rows),
+        rows_(workspace.rows),
         first_(first),
         count_(count),
         march_(rays_, grid, *seen(job.grid), seen(job.primitives), first, count),
         lanes_(mixture_, rays_.tolerance, rays_.largest_color, rays_.largest_extinction,
-               job.proved != 0, rays_.depth != 0, convert<float>(march_.end), room) {}
+               job.proved != 0, rays_.depth != 0, convert<float>(march_.end), workspace) {}
 
   void run() noexcept {
     for (;;) {
@@ -122,7 +122,7 @@ class MultivariateCellPacket {
 
   const PellucidGaussianPacketJob& job_;
   const PellucidPacketJob& rays_;
-  const NearMixture& mixture_;
+  const CulledMixture& mixture_;
   typename Panels::Rows& rows_;
   int first_, count_;
   Cells march_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/packet/bundle/culled_mixture.h"
 #include "pellucid/packet/bundle/lane_primitive_sets.h"
-#include "pellucid/packet/bundle/near_mixture.h"
 #include "pellucid/segment/gaussian_nodes.h"
 #include "pellucid/segment/multivariate_panel.h"
 #include "pellucid/simd/batch.h"
@@ -21,39 +21,40 @@ class NodePanels {
   using M = BatchMask<N>;
   using Span = MultivariateSpan<D, CubicBernstein<D>>;
   using Demand = PanelDemand<D, LanePrimitiveSets<N>>;
-  struct Room {
+  struct Workspace {
     NodeWorkspace<F> nodes;
     PanelWorkspace<D> closed;
     Span span;
   };
 
   template <class Allowance>
-  static PanelSegment<D> integrate(const NearMixture& mixture, const Span& span,
+  static PanelSegment<D> integrate(const CulledMixture& mixture, const Span& span,
                                    const Demand& demand, M on, const F& less,
-                                   const Allowance& allowance, Room& room) noexcept {
+                                   const Allowance& allowance, Workspace& workspace) noexcept {
     PanelSegment<D> result;
     M left = on;
     if (demand.grade == Grade::estimated && mixture.suits_binary32) {
-      left = by_nodes(mixture, span, demand, on, less, allowance, room.nodes, result);
+      left = by_nodes(mixture, span, demand, on, less, allowance, workspace.nodes, result);
       if (none(left)) return result;
     }
     const auto in_closed_form = [&](const Span& of) noexcept {
-      return integrate_multivariate_panel(mixture.transfer, of, demand, allowance, room.closed);
+      return integrate_multivariate_panel(mixture.transfer, of, demand, allowance,
+                                          workspace.closed);
     };
     if (all((!on) | left)) return in_closed_form(span);
-    for (int c = 0; c < mixture.transfer.channels; ++c) room.span.data[c] = span.data[c];
-    room.span.length = select(left, span.length, D(0));
-    return merged(left, in_closed_form(room.span), result);
+    for (int c = 0; c < mixture.transfer.channels; ++c) workspace.span.data[c] = span.data[c];
+    workspace.span.length = select(left, span.length, D(0));
+    return merged(left, in_closed_form(workspace.span), result);
   }
 
  private:
   /// The lanes that are left.
   template <class Allowance>
-  static M by_nodes(const NearMixture& mixture, const Span& span, const Demand& demand, M on,
-                    const F& less, const Allowance& allowance, NodeWorkspace<F>& room,
+  static M by_nodes(const CulledMixture& mixture, const Span& span, const Demand& demand, M on,
+                    const F& less, const Allowance& allowance, NodeWorkspace<F>& workspace,
                     PanelSegment<D>& result) noexcept {
     const F length = convert<float>(span.length);
-    GaussianNodes<F> nodes(length, room);
+    GaussianNodes<F> nodes(length, workspace);
     for (int i = 0; i < mixture.transfer.gaussians.count; ++i) {
       const M held = on & demand.primitives.contains(i);
       if (none(held)) continue;
@@ -96,7 +97,7 @@ class NodePanels {
 
   /// Most: how many rows it may have.
   template <int Most>
-  static void add(const NearMixture& mixture, int primitive, const CubicBernstein<D>* data,
+  static void add(const CulledMixture& mixture, int primitive, const CubicBernstein<D>* data,
                   const F& less, M held, GaussianNodes<F>& nodes) noexcept {
     const Gaussian<double>& g = mixture.transfer.gaussians.primitive[primitive];
     const NearGaussian& near = mixture.primitive[primitive];

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/packet/bundle/culled_mixture.h"
 #include "pellucid/packet/bundle/lane_primitive_sets.h"
-#include "pellucid/packet/bundle/near_mixture.h"
+#include "pellucid/packet/lane_compositor.h"
 #include "pellucid/packet/lane_spans.h"
 #include "pellucid/packet/mesh/mesh_rows.h"
 #include "pellucid/packet/opacity_trace.h"
-#include "pellucid/packet/packet_fold.h"
 #include "pellucid/segment/multivariate_panel.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -27,14 +27,14 @@ struct PanelRows : MeshRows<N, 16> {
 template <int N>
 struct ClosedPanels {
   using D = Batch<double, N>;
-  using Room = PanelWorkspace<D>;
+  using Workspace = PanelWorkspace<D>;
 
   template <class Data, class Demand, class Allowance>
-  static PanelSegment<D> integrate(const NearMixture& mixture,
+  static PanelSegment<D> integrate(const CulledMixture& mixture,
                                    const MultivariateSpan<D, Data>& span, const Demand& demand,
                                    BatchMask<N> /*on*/, const Batch<float, N>& /*less*/,
-                                   const Allowance& allowance, Room& room) noexcept {
-    return integrate_multivariate_panel(mixture.transfer, span, demand, allowance, room);
+                                   const Allowance& allowance, Workspace& workspace) noexcept {
+    return integrate_multivariate_panel(mixture.transfer, span, demand, allowance, workspace);
   }
 };
 
@@ -49,27 +49,27 @@ class PanelLanes {
   using M = BatchMask<N>;
   using Rows = PanelRows<N, Data>;
   using Span = MultivariateSpan<D, Data<D>>;
-  static constexpr int most_cuts = 60;
+  static constexpr int max_cuts = 60;
   /// Workspace that many packets use one after the other: with 16 lanes 800 kB, on the stack.
-  struct Room {
+  struct Workspace {
     Rows rows;
-    typename Panels::Room terms;
-    double end[most_cuts + 1][N];  ///< of the parts of a lane's span that are still to do
+    typename Panels::Workspace terms;
+    double end[max_cuts + 1][N];  ///< of the parts of a lane's span that are still to do
   };
 
   /// `length` of the rays, where they may absorb; `largest_color` >= 1; `depth`: whether trace() is
   /// asked for.
-  PanelLanes(const NearMixture& mixture, double tolerance, double largest_color,
+  PanelLanes(const CulledMixture& mixture, double tolerance, double largest_color,
              double largest_extinction, bool proved, bool depth, const F& length,
-             Room& room) noexcept
+             Workspace& workspace) noexcept
       : mixture_(mixture),
         transfer_(mixture.transfer),
         tolerance_(static_cast<float>(tolerance)),
         largest_color_(largest_color),
-        room_(room),
+        workspace_(workspace),
         length_(length),
         log_share_(log(share_of_diagonal())),
-        fold_(tolerance, largest_extinction, largest_color, length),
+        compositor_(tolerance, largest_extinction, largest_color, length),
         trace_(depth) {
     demand_.grade = proved ? Grade::proved : Grade::estimated;
     demand_.largest_color = largest_color;
@@ -109,12 +109,12 @@ class PanelLanes {
 
   const OpacityTrace<N>& trace() const noexcept { return trace_; }
 
-  SegmentResult<D> result() const noexcept { return fold_.result(); }
+  SegmentResult<D> result() const noexcept { return compositor_.result(); }
   /// Returns the error of that; `longer`: how much longer the rays may be where spans were passed
   /// over, as left_out says.
   D error(const F& longer) const noexcept {
     const D all = D(mixture_.diagonal) + convert<double>(longer / share_of_diagonal());
-    return fold_.error(convert<double>(taken_)) + D(largest_color_ * mixture_.charged) * all;
+    return compositor_.error(convert<double>(taken_)) + D(largest_color_ * mixture_.charged) * all;
   }
   I panels{0}, nodes{0};  ///< that absorb; of these, those whose color Gauss nodes have
   M estimated{false};
@@ -125,7 +125,7 @@ class PanelLanes {
     return clamp(length_ * F(1 / diagonal), F(1e-6f), F(1));
   }
   F less_by_now() const noexcept {
-    const F depth = convert<float>(fold_.result().optical_depth);
+    const F depth = convert<float>(compositor_.result().optical_depth);
     return max(depth - log_share_, F(0)) * F(1 - 16 * rounding_unit<float>);
   }
 
@@ -134,7 +134,7 @@ class PanelLanes {
   void take_spans(Lost&& lost) noexcept {
     const M lanes = spans_.ready();
     if (none(lanes)) return;
-    const Rows& rows = room_.rows;
+    const Rows& rows = workspace_.rows;
     I note(0);
     spans_.take_oldest(lanes, row_, [&](M here, int at) noexcept {
       const auto take = [&](const auto* numbers, auto& kept) noexcept {
@@ -188,35 +188,36 @@ class PanelLanes {
     const D position_error = convert<double>(place_error_);
     demand_.position_error =
         select((from_ > D(0)) & (to_ < D(1)), (to_ - from_) * position_error, position_error);
-    demand_.last_resort = (open_ >= I(most_cuts)) | !(to_ - from_ > D(1e-9));
-    fold_.budget.set_remaining_length(
+    demand_.last_resort = (open_ >= I(max_cuts)) | !(to_ - from_ > D(1e-9));
+    compositor_.budget.set_remaining_length(
         select(on, max(left_ - convert<float>(from_ * span_length_), F(0)),
-               fold_.budget.remaining_length()));
+               compositor_.budget.remaining_length()));
     const F length = convert<float>(span.length);
-    const F transparency = select(on, fold_.transparency(), F(1));
+    const F transparency = select(on, compositor_.transparency(), F(1));
     const F least = RayBudget<F>::minimum_allowance(F(tolerance_), length / max(length_, length));
     const auto allowance = [&](const D& opacity) noexcept {
       return convert<double>(
-          max(fold_.budget.allowance(length, convert<float>(opacity), transparency), least));
+          max(compositor_.budget.allowance(length, convert<float>(opacity), transparency), least));
     };
     const PanelSegment<D> panel =
-        Panels::integrate(mixture_, span, demand_, on, less_by_now(), allowance, room_.terms);
+        Panels::integrate(mixture_, span, demand_, on, less_by_now(), allowance, workspace_.terms);
 
     const M take = on & panel.done;
     if (any(take)) {
       const F error = convert<float>(panel.error(demand_.largest_color)) +
                       F(static_cast<float>(largest_color_)) * min(changed_ * length, F(1));
-      fold_.add(take, panel.found.segment);
-      fold_.budget.spend(select(take, length, F(0)), convert<float>(panel.opacity), transparency,
-                         select(take, error * F(1 + 8 * rounding_unit<float>), F(0)));
+      compositor_.add(take, panel.found.segment);
+      compositor_.budget.spend(select(take, length, F(0)), convert<float>(panel.opacity),
+                               transparency,
+                               select(take, error * F(1 + 8 * rounding_unit<float>), F(0)));
       const M absorbs = take & (panel.found.segment.optical_depth > D(0));
       taken_ += select(take, I(1), I(0));
       panels += select(absorbs, I(1), I(0));
       nodes += select(absorbs & panel.found.panels, I(1), I(0));
       estimated = estimated | (absorbs & !panel.found.proved);
       next_part(take);
-      trace_.note(take, fold_);
-      const M done = fold_.cut_off(take);
+      trace_.note(take, compositor_);
+      const M done = compositor_.cut_off(take);
       if (any(done)) {
         forget(done);
         stop(done);
@@ -232,7 +233,7 @@ class PanelLanes {
     from_ = select(more, to_, from_);
     for (unsigned left = bits(more); left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
-      to_ = select(M::from_bits(1u << l), D(room_.end[open_[l] - 1][l]), to_);
+      to_ = select(M::from_bits(1u << l), D(workspace_.end[open_[l] - 1][l]), to_);
     }
     open_ -= select(more, I(1), I(0));
     spans_.pending = spans_.pending & !(lanes & !more);
@@ -252,19 +253,19 @@ class PanelLanes {
     const M more = lanes & (until > end);
     for (unsigned left = bits(more); left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
-      room_.end[open_[l]][l] = until[l];
+      workspace_.end[open_[l]][l] = until[l];
     }
     open_ += select(more, I(1), I(0));
   }
 
-  const NearMixture& mixture_;
+  const CulledMixture& mixture_;
   const MultivariateTransfer<double>& transfer_;
   float tolerance_;
   double largest_color_;
-  Room& room_;
+  Workspace& workspace_;
   F length_, log_share_;
   PanelDemand<D, LanePrimitiveSets<N>> demand_;  ///< of the spans that lanes work on
-  PacketFold<N> fold_;
+  LaneCompositor<N> compositor_;
   OpacityTrace<N> trace_;
   LaneSpans<N> spans_;
   int row_ = 0;

@@ -46,7 +46,7 @@ Batch<float, N> end_of_cells(Batch<float, N> cell, Batch<float, N> last, Batch<d
   return select(moves, select(forward, last, F(0)), cell);
 }
 
-/// Walks in lanes, from cell to cell; a lane that is through takes the next walk there is,
+/// BlockSegments in lanes, from cell to cell; a lane that is through takes the next walk there is,
 /// whichever ray's. Places are in double, so that planes are where all other means see them: beside
 /// vacuum nothing makes up for what one cell has too much. They count from the lower corner of the
 /// block and from where the ray enters it.
@@ -57,7 +57,7 @@ class CellMarch {
   using D = Batch<double, N>;
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
-  using All = Walks<N>;
+  using All = BlockSegments<N>;
 
   /// The cells of one step.
   struct Step {
@@ -86,7 +86,7 @@ class CellMarch {
   /// Begins with new walks.
   void begin() noexcept {
     next_ = 0;
-    stretch = I(Stretches<N>::most);
+    stretch = I(BlockIntervals<N>::most);
   }
 
   /// Returns whether enough lanes are free for walks that wait.
@@ -161,7 +161,7 @@ class CellMarch {
   }
 
   // Of the walks in the lanes.
-  F jump, bend, variation;
+  F jump, second_difference, variation;
 
  private:
   /// Begins the next walks in these lanes.
@@ -195,7 +195,7 @@ class CellMarch {
     ray_left = load_spread(lanes, walks.left + at, ray_left);
     fastest_ = select(lanes, lookup(fastest_of_, ray), fastest_);
     jump = load_spread(lanes, walks.jump + at, jump);
-    bend = load_spread(lanes, walks.bend + at, bend);
+    second_difference = load_spread(lanes, walks.second_difference + at, second_difference);
     variation = load_spread(lanes, walks.variation + at, variation);
     begin_ = select(lanes, D(0), begin_);
     walking = walking | lanes;

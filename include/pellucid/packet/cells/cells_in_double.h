@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pellucid/field/trilinear.h"
-#include "pellucid/packet/cells/cell_places.h"
+#include "pellucid/packet/cells/cell_positions.h"
 #include "pellucid/packet/cells/exact_corners.h"
 #include "pellucid/packet/cells/span_piece.h"
 
@@ -12,7 +12,7 @@ namespace pellucid {
 /// Begins the lanes' spans anew in double, from the share `from` of their cells on.
 template <int N>
 [[gnu::noinline]] void begin_spans_in_double(const PacketGrid& grid, BatchMask<N> lanes,
-                                             const CellPlaces<N>& of, Batch<double, N> from,
+                                             const CellPositions<N>& of, Batch<double, N> from,
                                              SpanLanes<double, N>& span) noexcept {
   using D = Batch<double, N>;
   const ExactCorners<N> load(grid, of.cell);

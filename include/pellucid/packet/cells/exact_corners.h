@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "pellucid/packet/cells/corner_loads.h"
-#include "pellucid/packet/steps/sample_places.h"
+#include "pellucid/packet/steps/step_positions.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {

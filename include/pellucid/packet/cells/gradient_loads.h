@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "pellucid/packet/cells/cell_places.h"
+#include "pellucid/packet/cells/cell_positions.h"
 #include "pellucid/packet/light.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -23,7 +23,7 @@ class GradientLoads {
 
   /// The gradient's components in the world, along the lanes' ways through their cells, and, if
   /// there is a factor of it, the magnitude.
-  void operator()(M lanes, const CellPlaces<N>& places, CubicBernstein<F> (&gradient)[3],
+  void operator()(M lanes, const CellPositions<N>& places, CubicBernstein<F> (&gradient)[3],
                   CubicBernstein<F>& magnitude) const noexcept {
     load(lanes, places.cell);
     const Vec3<F> entry{convert<float>(places.entry.x), convert<float>(places.entry.y),

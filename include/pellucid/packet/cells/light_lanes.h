@@ -61,7 +61,7 @@ class LightLanes : public SpanLight<N> {
         loads_(grid, light) {}
 
   /// Begins spans. Returns the lanes in which a point light is too near for nodes.
-  [[gnu::noinline]] M begin(M lanes, const CellPlaces<N>& places) noexcept {
+  [[gnu::noinline]] M begin(M lanes, const CellPositions<N>& places) noexcept {
     loads_(lanes, places, this->gradient_, this->magnitude_);
     Vec3<F> entry{F(0), F(0), F(0)};
     if (light_.points > 0) entry = place_in_world(grid_, light_, places.cell, places.entry);

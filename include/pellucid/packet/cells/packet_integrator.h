@@ -2,15 +2,15 @@
 #pragma once
 
 #include "pellucid/error/random_errors.h"
-#include "pellucid/packet/cells/cell_places.h"
+#include "pellucid/packet/cells/cell_positions.h"
 #include "pellucid/packet/cells/cells_in_double.h"
 #include "pellucid/packet/cells/light_lanes.h"
 #include "pellucid/packet/cells/span_finder.h"
 #include "pellucid/packet/cells/span_piece.h"
 #include "pellucid/packet/cells/span_queue.h"
 #include "pellucid/packet/cells/surface_lanes.h"
+#include "pellucid/packet/lane_compositor.h"
 #include "pellucid/packet/opacity_trace.h"
-#include "pellucid/packet/packet_fold.h"
 #include "pellucid/packet/steps/smooth_march.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -21,7 +21,7 @@ namespace pellucid {
 ///
 /// What lies ahead of all of them is found first: their stretches in blocks (BlockMarch), and the
 /// spans that absorb in these (SpanFinder), whose lanes are any stretches. Then each lane takes the
-/// spans of its ray, piece by piece: each is cut where the extinction has a corner
+/// spans of its ray, piece by piece: each is cut where the extinction has a breakpoint
 /// (segment/extinction_piece.h), and halved where the budget cannot pay for its color. What
 /// binary32 is not good enough for is begun anew in double, when enough lanes have waited for that;
 /// what that is not good enough for is handed back, cell by cell.
@@ -41,28 +41,29 @@ class PacketIntegrator {
   using M = BatchMask<N>;
 
   /// Workspace that many packets use one after the other.
-  struct Room : SpanRoom<N> {
-    StepLengths<N> step_lengths;
+  struct Workspace : SpanWorkspace<N> {
+    StepTable<N> step_lengths;
   };
 
   /// Prepares for rays first … first + count - 1 of the job, count <= N.
-  PacketIntegrator(const PellucidPacketJob& job, const PacketGrid& grid, Room& room, int first,
-                   int count) noexcept
+  PacketIntegrator(const PellucidPacketJob& job, const PacketGrid& grid, Workspace& workspace,
+                   int first, int count) noexcept
       : job_(job),
         grid_(grid),
         transfer_(*seen(job.transfer)),
-        room_(room),
+        workspace_(workspace),
         first_(first),
         count_(count),
         blocks_(grid, job.rays + first, count),
         finder_(grid, blocks_, transfer_, is_lit),
         light_(make_light(job, grid, blocks_)),
         surfaces_(make_surfaces(job)),
-        smooth_(job, grid, blocks_.origin, blocks_.direction, room.step_lengths),
+        smooth_(job, grid, blocks_.origin, blocks_.direction, workspace.step_lengths),
         place_error_(span_end_errors<N>(job, first, count)),
-        fold_(job.tolerance,
-              is_lit ? job.largest_extinction : static_cast<double>(transfer_.largest_extinction),
-              job.largest_color, convert<float>(D::load(blocks_.end))),
+        compositor_(
+            job.tolerance,
+            is_lit ? job.largest_extinction : static_cast<double>(transfer_.largest_extinction),
+            job.largest_color, convert<float>(D::load(blocks_.end))),
         trace_(job.depth != 0),
         largest_color_(static_cast<float>(job.largest_color)),
         double_will_do_(job.tolerance >
@@ -75,15 +76,15 @@ class PacketIntegrator {
   void run() noexcept {
     while (any(blocks_.alive)) {
       find_spans();
-      queue_.begin(room_.rows);
+      queue_.begin(workspace_.rows);
       for (take_spans(); any(pending_); take_spans()) integrate_spans();
       sample_smooth();
     }
   }
 
   void store(PellucidRayResult* results) const noexcept {
-    const SegmentResult<D> all = fold_.result();
-    const D error = fold_.error(convert<double>(pieces_ + strides_));
+    const SegmentResult<D> all = compositor_.result();
+    const D error = compositor_.error(convert<double>(pieces_ + strides_));
     const F neighbor_deviation = smooth_.neighbor_deviation();
     const F longest_step = smooth_.longest_step();
     for (int l = 0; l < count_; ++l) {
@@ -136,17 +137,18 @@ class PacketIntegrator {
   /// Least width of a part of a cell, below which it is handed back.
   static constexpr float narrowest = 1.0f / 16;
   static constexpr float narrowest_lit = 1.0f / 512;
-  static constexpr int most_lit_pieces = 40;
+  static constexpr int max_lit_pieces = 40;
   /// Fraction of the difference of two rules that counts as the standard deviation of the better
   /// one.
   static constexpr float share_of_difference = 0.4f;
   /// After so many pieces and halvings what is left of a cell is handed back if it is not taken.
-  static constexpr int most_pieces = 64;
+  static constexpr int max_pieces = 64;
 
   void find_spans() noexcept {
-    blocks_.find(room_.stretches, skipped_);
+    blocks_.find(workspace_.stretches, skipped_);
     with_value_type(grid_.type, [this](auto value) noexcept {
-      finder_.template find<decltype(value)>(room_.stretches, room_.walks, room_.rows, cells_seen_);
+      finder_.template find<decltype(value)>(workspace_.stretches, workspace_.walks,
+                                             workspace_.rows, cells_seen_);
     });
   }
 
@@ -154,7 +156,7 @@ class PacketIntegrator {
   [[gnu::flatten]] void take_spans() noexcept {
     using Rows = SpanRows<N>;
     F row[Rows::fields];
-    const M lanes = queue_.take(!pending_, room_.rows, row);
+    const M lanes = queue_.take(!pending_, workspace_.rows, row);
     if (none(lanes)) return;
     const I code = convert<std::int32_t>(row[7]);
     const auto has = [&](int flag) noexcept { return (code & I(flag)) > I(0); };
@@ -168,26 +170,26 @@ class PacketIntegrator {
     span_length_ = select(lanes, row[5], span_length_);
     left_ = select(lanes, row[6], left_);
     code_ = select(lanes, code, code_);
-    whole_block_ = select(lanes, has(SpanCode::whole_block), whole_block_);
-    handed_back_ = handed_back_ | (lanes & has(SpanCode::handed_back));
-    const M in_double = lanes & has(SpanCode::in_double);
+    whole_block_ = select(lanes, has(PackedSpanInfo::whole_block), whole_block_);
+    scalar_fallback_ = scalar_fallback_ | (lanes & has(PackedSpanInfo::scalar_fallback));
+    const M in_double = lanes & has(PackedSpanInfo::in_double);
     if (any(in_double)) wait_for_double(in_double);
     if constexpr (is_lit) {
       if (surfaces_.exist()) {
         close_ = select(lanes, surfaces_.close(single_.data, row[4], place_error_, row[5]), close_);
         fail(surfaces_.come_to(lanes, single_.data.b[0], close_));
       }
-      const M begun = lanes & !handed_back_;
+      const M begun = lanes & !scalar_fallback_;
       if (any(begun)) {
-        handed_back_ = handed_back_ | light_.begin(begun, places_of(begun, code_));
+        scalar_fallback_ = scalar_fallback_ | light_.begin(begun, places_of(begun, code_));
       }
     }
     constant_ += select(lanes & whole_block_, I(1), I(0));
   }
 
   /// Returns the positions at which the lanes' rays cross the cells of these spans.
-  CellPlaces<N> places_of(M lanes, I of) const noexcept {
-    return span_places(grid_, blocks_, room_.stretches, lanes, of);
+  CellPositions<N> places_of(M lanes, I of) const noexcept {
+    return span_places(grid_, blocks_, workspace_.stretches, lanes, of);
   }
 
   /// Gives up what was found of the lanes' rays.
@@ -202,7 +204,7 @@ class PacketIntegrator {
     drop_spans(lanes);
     for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
-      blocks_.go_back(l, room_.stretches, SpanCode::stretch_of(code_[l]));
+      blocks_.go_back(l, workspace_.stretches, PackedSpanInfo::stretch_of(code_[l]));
     }
   }
 
@@ -222,23 +224,23 @@ class PacketIntegrator {
     samples_taken_ += select(on, I(4), I(0));
     const SegmentResult<F>& s = steps.found.segment;
     const F left = convert<float>(D::load(blocks_.end) - from);
-    const F transparency = fold_.transparency();
+    const F transparency = compositor_.transparency();
     const F deviation = F(share_of_difference) * steps.found.difference;
     const F variance = transparency * transparency * (deviation * deviation + steps.least_variance);
     const F rounding = transparency * (F(32 * rounding_unit<float>) * s.opacity * largest_color_ +
                                        F(static_cast<float>(job_.sample_rounding)) * steps.length);
     const F largest =
-        sampled_.largest_variance(fold_.budget, rounding, s.opacity, steps.length, left);
+        sampled_.largest_variance(compositor_.budget, rounding, s.opacity, steps.length, left);
     const M take =
-        on & steps.valid & (variance <= largest) & (rounding <= fold_.budget.remaining());
+        on & steps.valid & (variance <= largest) & (rounding <= compositor_.budget.remaining());
     const M refused = smooth_.finer(on & !take);
     if (any(refused)) {
       blocks_.go_in_cells(refused, from, smooth_.end);
       smooth_.refuse(refused, transparency);
     }
     if (none(take)) return;
-    fold_.add(take, s);
-    sampled_.charge(take, fold_.budget, variance, rounding, s.opacity, steps.length, left,
+    compositor_.add(take, s);
+    sampled_.charge(take, compositor_.budget, variance, rounding, s.opacity, steps.length, left,
                     transparency);
     smooth_.take(take, steps, transparency, variance <= F(0.2f) * largest);
     strides_ += select(take, I(1), I(0));
@@ -247,9 +249,9 @@ class PacketIntegrator {
   }
 
   void integrate_spans() noexcept {
-    if (any(handed_back_)) {
-      hand_back(handed_back_);
-      handed_back_ = M(false);
+    if (any(scalar_fallback_)) {
+      fall_back_to_scalar(scalar_fallback_);
+      scalar_fallback_ = M(false);
     }
     const M single = pending_ & !in_double_now_, wide = pending_ & in_double_now_;
     if constexpr (is_lit) {
@@ -276,10 +278,11 @@ class PacketIntegrator {
     SpanPiece<T, N> piece = next_piece(span, transfer_, on, place_error_, largest_color_);
     const SegmentResult<F>& s = piece.found.segment;
     const F length = convert<float>(piece.length);
-    fold_.budget.set_remaining_length(
-        select(on, left_behind(convert<float>(span.from)), fold_.budget.remaining_length()));
-    const F transparency = fold_.transparency();
-    const typename RayBudget<F>::SpanShare shares = fold_.budget.span_share(length, s.opacity);
+    compositor_.budget.set_remaining_length(
+        select(on, left_behind(convert<float>(span.from)), compositor_.budget.remaining_length()));
+    const F transparency = compositor_.transparency();
+    const typename RayBudget<F>::SpanShare shares =
+        compositor_.budget.span_share(length, s.opacity);
     const F allowed = shares.sum(), cost_of_rounding = transparency * piece.rounding;
     const auto fits = [&] {
       return on & piece.end.found &
@@ -296,7 +299,7 @@ class PacketIntegrator {
       const bool proved = job_.proved != 0;
       const F in_panel_cost =
           transparency * s.opacity * panel_piece_error(piece.seen, piece.spread, proved);
-      const F halved_in_vain = wide || !transfer_.bends ? F(0) : F(8) * allowed;
+      const F halved_in_vain = wide || !transfer_.has_color_breakpoints ? F(0) : F(8) * allowed;
       const M in_panel = room_for_color & (s.optical_depth <= F(largest_panel_depth<float>)) &
                          (in_panel_cost + cost_of_rounding <= allowed) &
                          (transparency * piece.found.color_error > halved_in_vain);
@@ -311,14 +314,14 @@ class PacketIntegrator {
       const F part = convert<float>((Place(1) - span.from) * half);  // of the cell
       // Halving makes the color at most four times better, and the half of a half sixteen times,
       // and of rounding nothing: that has to leave some room.
-      const M halve = rest & room_for_color & (span.pieces < I(most_pieces)) &
+      const M halve = rest & room_for_color & (span.pieces < I(max_pieces)) &
                       (part >= F(narrowest)) &
                       (transparency * piece.found.color_error <= F(64) * allowed);
       span.cap = select(halve, half, span.cap);
       const M give_up = rest & !halve;
       if (any(give_up)) {
         if constexpr (wide) {
-          hand_back(give_up);
+          fall_back_to_scalar(give_up);
         } else {
           wait_for_double(give_up);
         }
@@ -326,8 +329,8 @@ class PacketIntegrator {
     }
     if (none(take)) return;
     const F cost = transparency * piece.found.color_error + cost_of_rounding;
-    fold_.add(take, s);
-    fold_.budget.spend(select(take, length, F(0)), shares, select(take, cost, F(0)));
+    compositor_.add(take, s);
+    compositor_.budget.spend(select(take, length, F(0)), shares, select(take, cost, F(0)));
     pieces_ += select(take, I(1), I(0));
     panels_ += select(take & piece.found.panels, I(1), I(0));
     proved_ = proved_ & !(take & !piece.found.proved);
@@ -355,12 +358,15 @@ class PacketIntegrator {
     if (light_.has_factor()) light_.weaken(piece, from, to, single_, largest_color_);
     const LightOfPiece<N> lit = light_.measure(piece, from, to, transfer_);
     const F length = piece.length, left = left_behind(from);
-    fold_.budget.set_remaining_length(select(on, left, fold_.budget.remaining_length()));
-    const F transparency = fold_.transparency(), seen = transparency * s.opacity;
+    compositor_.budget.set_remaining_length(
+        select(on, left, compositor_.budget.remaining_length()));
+    const F transparency = compositor_.transparency(), seen = transparency * s.opacity;
     const F linear = transparency * piece.rounding + seen * lit.color_error;
-    const typename RayBudget<F>::SpanShare shares = fold_.budget.span_share(length, s.opacity);
+    const typename RayBudget<F>::SpanShare shares =
+        compositor_.budget.span_share(length, s.opacity);
     const M affordable = linear <= F(0.6f) * shares.sum();
-    const F largest = sampled_.largest_variance(fold_.budget, linear, s.opacity, length, left);
+    const F largest =
+        sampled_.largest_variance(compositor_.budget, linear, s.opacity, length, left);
     const auto growth = [&](F deviation) noexcept {
       return max(like_.variance_with(lit.signs, deviation) - sampled_.variance(), F(0));
     };
@@ -372,10 +378,10 @@ class PacketIntegrator {
     if (any(rest)) {
       const F half = F(0.5f) * piece.place;
       // Light may turn in a small part of a cell, and a table be narrow.
-      const M halve = rest & piece.end.found & affordable & (single_.pieces < I(most_lit_pieces)) &
+      const M halve = rest & piece.end.found & affordable & (single_.pieces < I(max_lit_pieces)) &
                       (ahead * half >= F(narrowest_lit)) & (variance <= F(1e6f) * largest);
       single_.cap = select(halve, half, single_.cap);
-      handed_back_ = handed_back_ | (rest & !halve);
+      scalar_fallback_ = scalar_fallback_ | (rest & !halve);
     }
     if (none(take)) return;
     // What becomes of a lane must not depend on the others: each has its own rule.
@@ -391,8 +397,8 @@ class PacketIntegrator {
                select(more, better.b, color.b)};
     }
     s.radiance = s.opacity * color;
-    fold_.add(take, s);
-    sampled_.charge(take, fold_.budget, select(more, variance, variance_by_three), linear,
+    compositor_.add(take, s);
+    sampled_.charge(take, compositor_.budget, select(more, variance, variance_by_three), linear,
                     s.opacity, length, left, transparency);
     like_.add(take, lit.signs, select(more, of_six, of_three));
     pieces_ += select(take, I(1), I(0));
@@ -442,13 +448,13 @@ class PacketIntegrator {
     // What is between its place and where it may be is in front of it, or behind.
     const F largest = F(2) * single_.extinction.largest * F(light_.largest_factor());
     error += largest_color_ * min(largest * u_error * span_length_, F(1));
-    const F transparency = fold_.transparency();
+    const F transparency = compositor_.transparency();
     const F cost = transparency * opacity * error;
-    const M affordable = crosses & (cost <= fold_.budget.remaining());
+    const M affordable = crosses & (cost <= compositor_.budget.remaining());
     fail(crosses & !affordable);
-    const typename RayBudget<F>::SpanShare shares = fold_.budget.span_share(F(0), opacity);
-    fold_.budget.spend(F(0), shares, select(affordable, cost, F(0)));
-    fold_.add(affordable, SegmentResult<F>{depth, opacity, F(1) - opacity, opacity * color});
+    const typename RayBudget<F>::SpanShare shares = compositor_.budget.span_share(F(0), opacity);
+    compositor_.budget.spend(F(0), shares, select(affordable, cost, F(0)));
+    compositor_.add(affordable, SegmentResult<F>{depth, opacity, F(1) - opacity, opacity * color});
     surfaces_.cross(affordable, rising);
   }
 
@@ -458,7 +464,7 @@ class PacketIntegrator {
     failed_ = failed_ | lanes;
     blocks_.alive = blocks_.alive & !lanes;
     drop_spans(lanes);
-    handed_back_ = handed_back_ & !lanes;
+    scalar_fallback_ = scalar_fallback_ & !lanes;
   }
 
   /// Returns the remaining lengths of the rays, from this share of the lanes' cells on.
@@ -468,7 +474,7 @@ class PacketIntegrator {
   void wait_for_double(M lanes) noexcept {
     if (is_lit || !double_will_do_) {
       // Not yet: a span that is being taken is not complete.
-      handed_back_ = handed_back_ | lanes;
+      scalar_fallback_ = scalar_fallback_ | lanes;
       return;
     }
     in_double_now_ = in_double_now_ | lanes;
@@ -485,15 +491,15 @@ class PacketIntegrator {
 
   /// Something was added to the lanes' rays: ends those that no longer matter.
   void retire(M lanes) noexcept {
-    trace_.note(lanes, fold_);
-    const M done = fold_.cut_off(lanes);
+    trace_.note(lanes, compositor_);
+    const M done = compositor_.cut_off(lanes);
     blocks_.alive = blocks_.alive & !done;
     drop_spans(done);
     smooth_.walking = smooth_.walking & !done;
   }
 
   /// Has what is left of the lanes' spans integrated by other means.
-  void hand_back(M lanes) noexcept {
+  void fall_back_to_scalar(M lanes) noexcept {
     if constexpr (is_lit) {
       if (surfaces_.exist()) {
         const CubicBernstein<F>& data = single_.data;
@@ -501,25 +507,25 @@ class PacketIntegrator {
       }
     }
     lanes = lanes & pending_;
-    const F transparency = fold_.transparency();
+    const F transparency = compositor_.transparency();
     const M wide = in_double_now_ & !not_begun_;
     const D from = select(wide, double_.from, convert<double>(single_.from));
     const F length = select(wide, convert<float>(double_.length), single_.length);
-    fold_.budget.set_remaining_length(
-        select(lanes, left_behind(convert<float>(from)), fold_.budget.remaining_length()));
-    const F flat = fold_.budget.allowance(length, F(0), transparency),
-            all = fold_.budget.allowance(length, F(1), transparency);
-    HandedBack<N> handed_back;
+    compositor_.budget.set_remaining_length(
+        select(lanes, left_behind(convert<float>(from)), compositor_.budget.remaining_length()));
+    const F flat = compositor_.budget.allowance(length, F(0), transparency),
+            all = compositor_.budget.allowance(length, F(1), transparency);
+    ScalarFallback<N> scalar_fallback;
     unsigned not_proved = 0, with_panels = 0, given_up = 0;
     for (int l = 0; l < N; ++l) {
       if ((bits(lanes) >> l & 1) == 0) continue;
       PellucidCell cell;
-      const int code = code_[l], stretch = SpanCode::stretch_of(code);
+      const int code = code_[l], stretch = PackedSpanInfo::stretch_of(code);
       for (int a = 0; a < 3; ++a) {
-        cell.cell[a] =
-            room_.stretches.block[a][stretch] * block_width + SpanCode::place_in_block(code, a);
+        cell.cell[a] = workspace_.stretches.block[a][stretch] * block_width +
+                       PackedSpanInfo::place_in_block(code, a);
       }
-      cell.begin = room_.stretches.begin[stretch];
+      cell.begin = workspace_.stretches.begin[stretch];
       cell.from = from[l];
       cell.position_error = static_cast<double>(place_error_[l]);
       cell.allowance_flat = static_cast<double>(flat[l]);
@@ -530,13 +536,13 @@ class PacketIntegrator {
         given_up |= 1u << l;
         continue;
       }
-      handed_back.set(l, result);
+      scalar_fallback.set(l, result);
       if (result.proved == 0) not_proved |= 1u << l;
       if (result.panels != 0) with_panels |= 1u << l;
     }
     fail(M::from_bits(given_up));
     lanes = lanes & pending_;
-    fold_.add(handed_back, select(lanes, length, F(0)));
+    compositor_.add(scalar_fallback, select(lanes, length, F(0)));
     proved_ = proved_ & !M::from_bits(not_proved);
     pieces_ += select(lanes, I(1), I(0));
     in_double_ += select(lanes & !in_double_now_, I(1), I(0));
@@ -548,7 +554,7 @@ class PacketIntegrator {
   const PellucidPacketJob& job_;
   const PacketGrid& grid_;
   const BinnedTransfer& transfer_;
-  Room& room_;
+  Workspace& workspace_;
   int first_, count_;
   BlockMarch<N> blocks_;
   SpanFinder<N> finder_;
@@ -560,10 +566,10 @@ class PacketIntegrator {
 
   // The span that a lane works on.
   M pending_{false};
-  M handed_back_{false};    ///< those of them that are not for the rule here
-  M in_double_now_{false};  ///< those that binary32 is not good enough for
-  M not_begun_{false};      ///< and of which double_ does not hold anything yet
-  M whole_block_{false};    ///< of one material
+  M scalar_fallback_{false};  ///< those of them that are not for the rule here
+  M in_double_now_{false};    ///< those that binary32 is not good enough for
+  M not_begun_{false};        ///< and of which double_ does not hold anything yet
+  M whole_block_{false};      ///< of one material
   SpanLanes<float, N> single_;
   SpanLanes<double, N> double_;
   int waited_ = 0;  ///< pieces that lanes which wait for double could have integrated
@@ -577,7 +583,7 @@ class PacketIntegrator {
 
   SampledErrors<F> sampled_;
   Like like_;
-  PacketFold<N> fold_;
+  LaneCompositor<N> compositor_;
   OpacityTrace<N> trace_;
   F largest_color_;
   bool double_will_do_;  ///< with colors in float

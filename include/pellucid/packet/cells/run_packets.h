@@ -9,10 +9,11 @@ namespace pellucid {
 template <class Packet>
 void run_packets(const PellucidPacketJob& job) noexcept {
   const PacketGrid grid(job);
-  typename Packet::Room room;
+  typename Packet::Workspace workspace;
   for (int first = 0; first < job.count; first += Packet::lane_count) {
     const int left = job.count - first;
-    Packet packet(job, grid, room, first, left < Packet::lane_count ? left : Packet::lane_count);
+    Packet packet(job, grid, workspace, first,
+                  left < Packet::lane_count ? left : Packet::lane_count);
     packet.run();
     packet.store(job.results);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/blocks/walk_list.h"
+#include "pellucid/packet/blocks/block_segment_list.h"
 #include "pellucid/packet/cells/cell_march.h"
 #include "pellucid/transfer/binned.h"
 
@@ -15,21 +15,21 @@ struct SpanRows {
   /// A ray crosses at most 22 cells of a block; the row behind the last one is written to.
   static constexpr int of_a_stretch = 23;
 
-  /// Data b0 … b3; their rounding; world length; of the ray from its begin on; SpanCode.
-  float row[(Stretches<N>::most + 1) * of_a_stretch * fields];
+  /// Data b0 … b3; their rounding; world length; of the ray from its begin on; PackedSpanInfo.
+  float row[(BlockIntervals<N>::most + 1) * of_a_stretch * fields];
 
   // Per ray, the stretches that have spans: where their rows begin and end.
   int stretches[N];
-  std::int32_t first[N][Stretches<N>::of_a_ray], end[N][Stretches<N>::of_a_ray];
+  std::int32_t first[N][BlockIntervals<N>::of_a_ray], end[N][BlockIntervals<N>::of_a_ray];
 };
 
 /// Further facts of a span, in a whole number that a float holds exactly: the sum of these.
-struct SpanCode {
-  static constexpr int cell[3] = {1, 8, 64};  ///< times its place in the block
-  static constexpr int handed_back = 512;     ///< not for the packets' rule
-  static constexpr int whole_block = 1024;    ///< of one material
-  static constexpr int in_double = 2048;      ///< not for binary32
-  static constexpr int stretch = 4096;        ///< times its number, of 8 bits
+struct PackedSpanInfo {
+  static constexpr int cell[3] = {1, 8, 64};   ///< times its place in the block
+  static constexpr int scalar_fallback = 512;  ///< not for the packets' rule
+  static constexpr int whole_block = 1024;     ///< of one material
+  static constexpr int in_double = 2048;       ///< not for binary32
+  static constexpr int stretch = 4096;         ///< times its number, of 8 bits
 
   // I: an int, or several.
   template <class I>
@@ -41,7 +41,8 @@ struct SpanCode {
     return code >> 12;
   }
 };
-static_assert(block_width == 8 && SpanCode::cell[2] == 1 << 6 && SpanCode::stretch == 1 << 12);
+static_assert(block_width == 8 && PackedSpanInfo::cell[2] == 1 << 6 &&
+              PackedSpanInfo::stretch == 1 << 12);
 
 /// Finds what of rays' stretches absorbs: from cell to cell, their range and then the hull of the
 /// data along the ray against the marks of the transfer function.
@@ -51,7 +52,7 @@ class SpanFinder {
   using F = Batch<float, N>;
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
-  using All = Stretches<N>;
+  using All = BlockIntervals<N>;
   using Rows = SpanRows<N>;
 
   /// `lit`: blocks of one material are gone through cell by cell, for light changes in them.
@@ -61,7 +62,7 @@ class SpanFinder {
 
   /// Looks at data of this type. Adds to `cells` those looked at, per ray.
   template <class Value>
-  void find(All& stretches, Walks<N>& walks, Rows& rows, std::int32_t* cells) noexcept {
+  void find(All& stretches, BlockSegments<N>& walks, Rows& rows, std::int32_t* cells) noexcept {
     for (int i = 0; i < stretches.count; ++i) stretches.cells[i] = stretches.spans[i] = 0;
     fill<Value>(stretches, walks, rows);
     cells_.begin();
@@ -73,12 +74,13 @@ class SpanFinder {
 
  private:
   template <class Value>
-  [[gnu::flatten]] void fill(All& stretches, Walks<N>& walks, Rows& rows) noexcept {
+  [[gnu::flatten]] void fill(All& stretches, BlockSegments<N>& walks, Rows& rows) noexcept {
     list_.template fill<Value>(
         stretches, walks, [&](M lanes, I stretch, F value, F length, F left) noexcept {
           lanes = is_constant<Value>(lanes, value);
           const I number = select(lanes, stretch, I(All::most));
-          const F code = convert<float>(number) * F(SpanCode::stretch) + F(SpanCode::whole_block);
+          const F code =
+              convert<float>(number) * F(PackedSpanInfo::stretch) + F(PackedSpanInfo::whole_block);
           const F rounding = F(4 * rounding_unit<float>) * abs(value);
           const F span[] = {value, value, value, value, rounding, length, left, code};
           store_records<Rows::fields>(span, rows.row, number * I(Rows::of_a_stretch));
@@ -105,7 +107,7 @@ class SpanFinder {
   }
 
   /// Returns whether there is anything left to be gone through.
-  [[gnu::flatten]] bool take(const Walks<N>& walks, All& stretches) noexcept {
+  [[gnu::flatten]] bool take(const BlockSegments<N>& walks, All& stretches) noexcept {
     if (cells_.wants(walks)) {
       note(stretches);
       const M begun = cells_.take(walks);
@@ -143,14 +145,16 @@ class SpanFinder {
   void put_down(M found, const CubicBernstein<F>& data, F rounding, Rows& rows) noexcept {
     const typename CellMarch<N>::Step& step = step_;
     const F least = data.hull_min() - rounding, most = data.hull_max() + rounding;
-    F code = convert<float>(cells_.stretch) * F(SpanCode::stretch);
-    for (int a = 0; a < 3; ++a) code += F(SpanCode::cell[a]) * step.cell[a];
+    F code = convert<float>(cells_.stretch) * F(PackedSpanInfo::stretch);
+    for (int a = 0; a < 3; ++a) code += F(PackedSpanInfo::cell[a]) * step.cell[a];
     M jumps;
     found = may_absorb(transfer_, found, least, most, jumps);
     if (any(jumps)) {
       const M hard =
           has_unresolved_jump(transfer_, select(jumps, least, F(0)), select(jumps, most, F(0)));
-      code += select(jumps, select(hard, F(SpanCode::handed_back), F(SpanCode::in_double)), F(0));
+      code += select(jumps,
+                     select(hard, F(PackedSpanInfo::scalar_fallback), F(PackedSpanInfo::in_double)),
+                     F(0));
     }
     if (none(found)) return;
     const F span[] = {data.b[0],
@@ -213,10 +217,10 @@ class SpanFinder {
     };
     const F by_jumps = growth(cells_.jump), by_variation = growth(cells_.variation);
     // Squares may underflow.
-    const F root = sqrt(by_jumps * by_jumps + F(4) * cells_.bend * gap + F(1e-36f));
+    const F root = sqrt(by_jumps * by_jumps + F(4) * cells_.second_difference * gap + F(1e-36f));
     const M away = by_jumps < F(0);
     const F smallest = select(away, root - by_jumps, F(2) * gap) /
-                       select(away, F(2) * cells_.bend, by_jumps + root);
+                       select(away, F(2) * cells_.second_difference, by_jumps + root);
     constexpr float less = 1 - 32 * u;
     return select(is_nan(by_jumps + by_variation), F(0),
                   F(less) * max(smallest, gap / max(by_variation, F(0))));
@@ -251,7 +255,7 @@ class SpanFinder {
   }
 
   const BinnedTransfer& transfer_;
-  WalkList<N> list_;
+  BlockSegmentList<N> list_;
   CellMarch<N> cells_;
   bool lit_;
   typename CellMarch<N>::Step step_;

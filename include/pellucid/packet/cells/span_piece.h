@@ -22,8 +22,8 @@ F segment_rounding(const SegmentResult<F>& s, F unit, F largest_color, F depth_e
          colors * min(depth_error, F(1));
 }
 
-/// The next piece of spans in lanes: what lies in front of the first corner of the extinction, or
-/// less.
+/// The next piece of spans in lanes: what lies in front of the first breakpoint of the extinction,
+/// or less.
 template <class T, int N>
 struct SpanPiece {
   using F = Batch<T, N>;
@@ -31,7 +31,7 @@ struct SpanPiece {
 
   PieceEnd<F> end;
   F place;               ///< where the piece ends, of what is left
-  BatchMask<N> capped;   ///< whether it is shorter than up to the corner
+  BatchMask<N> capped;   ///< whether it is shorter than up to the breakpoint
   BatchMask<N> crosses;  ///< whether it ends at one
   CutCubic<F> parts;     ///< the piece's data, and those behind it
   F length;              ///< world length
@@ -125,7 +125,7 @@ F share_within(F reach, F rise) noexcept {
 }
 
 /// Returns a bound on how much jumps at the ends of its interval can move the mean extinction of a
-/// piece, whose data are known to `value_error` (that of the corners' places included); lanes
+/// piece, whose data are known to `value_error` (that of the breakpoints' places included); lanes
 /// without any: 0.
 ///
 /// Data within some δ of a jump may be on either side. Of a monotone piece that begins there, with

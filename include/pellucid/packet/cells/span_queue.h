@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/cells/cell_places.h"
+#include "pellucid/packet/cells/cell_positions.h"
 #include "pellucid/packet/cells/span_finder.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -9,9 +9,9 @@ namespace pellucid {
 
 /// Workspace in which the spans of packets are found, one packet after the other.
 template <int N>
-struct SpanRoom {
-  Stretches<N> stretches;
-  Walks<N> walks;
+struct SpanWorkspace {
+  BlockIntervals<N> stretches;
+  BlockSegments<N> walks;
   SpanRows<N> rows;
 };
 
@@ -29,14 +29,14 @@ Batch<float, N> span_end_errors(const PellucidPacketJob& job, int first, int cou
 
 /// Returns the positions at which the lanes' own rays cross the cells of spans.
 template <int N>
-CellPlaces<N> span_places(const PacketGrid& grid, const BlockMarch<N>& rays,
-                          const Stretches<N>& stretches, BatchMask<N> lanes,
-                          Batch<std::int32_t, N> code) noexcept {
+CellPositions<N> span_places(const PacketGrid& grid, const BlockMarch<N>& rays,
+                             const BlockIntervals<N>& stretches, BatchMask<N> lanes,
+                             Batch<std::int32_t, N> code) noexcept {
   using I = Batch<std::int32_t, N>;
   code = select(lanes, code, I(0));
   I in_block[3];
-  for (int a = 0; a < 3; ++a) in_block[a] = SpanCode::place_in_block(code, a);
-  return cell_places(grid, rays, stretches, SpanCode::stretch_of(code), in_block);
+  for (int a = 0; a < 3; ++a) in_block[a] = PackedSpanInfo::place_in_block(code, a);
+  return cell_places(grid, rays, stretches, PackedSpanInfo::stretch_of(code), in_block);
 }
 
 /// The spans that were found of rays and are not taken yet, for each lane those of its own ray.
@@ -64,7 +64,7 @@ class SpanQueue {
   M take(M wanted, const Rows& rows, F (&row)[Rows::fields]) noexcept {
     const M over = wanted & (row_ >= end_row_) & (stretch_of_ray_ < stretches_);
     if (any(over)) {
-      const I at = select(over, lane_ * I(Stretches<N>::of_a_ray) + stretch_of_ray_, I(0));
+      const I at = select(over, lane_ * I(BlockIntervals<N>::of_a_ray) + stretch_of_ray_, I(0));
       row_ = select(over, gather(rows.first[0], at), row_);
       end_row_ = select(over, gather(rows.end[0], at), end_row_);
       stretch_of_ray_ += select(over, I(1), I(0));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/cells/cell_places.h"
+#include "pellucid/packet/cells/cell_positions.h"
 #include "pellucid/packet/cells/span_queue.h"
 #include "pellucid/packet/cells/surface_lanes.h"
-#include "pellucid/packet/packet_fold.h"
+#include "pellucid/packet/lane_compositor.h"
 #include "pellucid/segment/extinction_piece.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -24,15 +24,15 @@ class SurfacePacket {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
-  using Room = SpanRoom<N>;
+  using Workspace = SpanWorkspace<N>;
 
   /// Prepares for rays first … first + count - 1 of the job, count <= N.
-  SurfacePacket(const PellucidPacketJob& job, const PacketGrid& grid, Room& room, int first,
-                int count) noexcept
+  SurfacePacket(const PellucidPacketJob& job, const PacketGrid& grid, Workspace& workspace,
+                int first, int count) noexcept
       : job_(job),
         grid_(grid),
         light_(*seen(job.light)),
-        room_(room),
+        workspace_(workspace),
         first_(first),
         count_(count),
         blocks_(grid, job.rays + first, count),
@@ -48,18 +48,18 @@ class SurfacePacket {
 
   void run() noexcept {
     while (any(blocks_.alive)) {
-      blocks_.find(room_.stretches, skipped_, stretches_ahead);
+      blocks_.find(workspace_.stretches, skipped_, stretches_ahead);
       with_value_type(grid_.type, [this](auto value) noexcept {
-        finder_.template find<decltype(value)>(room_.stretches, room_.walks, room_.rows,
-                                               cells_seen_);
+        finder_.template find<decltype(value)>(workspace_.stretches, workspace_.walks,
+                                               workspace_.rows, cells_seen_);
       });
-      queue_.begin(room_.rows);
+      queue_.begin(workspace_.rows);
       for (take_spans(); any(pending_); take_spans()) follow(pending_);
     }
   }
 
   void store(PellucidRayResult* results) const noexcept {
-    const SegmentResult<D> all = fold_.result();
+    const SegmentResult<D> all = compositor_.result();
     for (int l = 0; l < count_; ++l) {
       PellucidRayResult& r = results[first_ + l];
       r = light_of_lane(all, l);
@@ -83,7 +83,7 @@ class SurfacePacket {
   [[gnu::flatten]] void take_spans() noexcept {
     using Rows = SpanRows<N>;
     F row[Rows::fields];
-    const M lanes = queue_.take(!pending_, room_.rows, row);
+    const M lanes = queue_.take(!pending_, workspace_.rows, row);
     if (none(lanes)) return;
     pending_ = pending_ | lanes;
     for (int k = 0; k < 4; ++k) data_.b[k] = select(lanes, row[k], data_.b[k]);
@@ -129,9 +129,9 @@ class SurfacePacket {
     const F ahead = F(1) - from_;
     const F u = min(from_ + ahead * place, F(1));
     const F u_error = min(ahead * crossing_error(data_, place, F(2) * close_) + F(1e-6f), F(1));
-    CellPlaces<N> places;
+    CellPositions<N> places;
     if (surfaces_.is_lit() || job_.depth != 0) {
-      places = span_places(grid_, blocks_, room_.stretches, lanes, code_);
+      places = span_places(grid_, blocks_, workspace_.stretches, lanes, code_);
     }
     GradientStretch<F> along;
     along.to_eye = to_eye_;
@@ -148,15 +148,16 @@ class SurfacePacket {
       note_depth(lanes & (opacity >= F(1)) & (u_error < F(1e-3f)),
                  places.begin + convert<double>(u) * places.length);
     }
-    const F before = convert<float>(fold_.transparency());
+    const F before = convert<float>(compositor_.transparency());
     error_ += select(lanes, before * opacity * error, F(0));
     const D a = select(lanes, convert<double>(opacity), D(0));
     const auto masked = [&](F x) noexcept { return select(lanes, convert<double>(x), D(0)); };
-    fold_.add(SegmentResult<D>{
+    compositor_.add(SegmentResult<D>{
         D(0), a, D(1) - a, {a * masked(color.r), a * masked(color.g), a * masked(color.b)}});
     met_ += select(lanes, I(1), I(0));
     // What is behind them no longer matters.
-    const F rest = convert<float>(fold_.transparency()) * F(static_cast<float>(job_.largest_color));
+    const F rest =
+        convert<float>(compositor_.transparency()) * F(static_cast<float>(job_.largest_color));
     const M done = lanes & (rest <= F(0.125f) * F(static_cast<float>(job_.tolerance)));
     error_ += select(done, rest, F(0));
     end_rays(done);
@@ -185,7 +186,7 @@ class SurfacePacket {
   const PellucidPacketJob& job_;
   const PacketGrid& grid_;
   const PacketLight& light_;
-  Room& room_;
+  Workspace& workspace_;
   int first_, count_;
   BlockMarch<N> blocks_;
   SpanFinder<N> finder_;
@@ -204,7 +205,7 @@ class SurfacePacket {
   F length_;                ///< of the cell, world length
   I code_;
 
-  FrontToBackCompositor<D> fold_;
+  FrontToBackCompositor<D> compositor_;
   F error_{0};
   M failed_{false};  ///< whether a lane's ray is left
   PellucidHalfOpacity half_[N];

@@ -55,7 +55,7 @@ class CellLoads {
   /// Their gradient in the world, and its magnitude if there is a factor of it.
   void gradients(M lanes, const Ways& ways, CubicBernstein<F> (&gradient)[3],
                  CubicBernstein<F>& magnitude) const noexcept {
-    CellPlaces<N> places;
+    CellPositions<N> places;
     const auto [cell] = within(lanes, ways);
     for (int a = 0; a < 3; ++a) {
       places.cell[a] = cell[a];

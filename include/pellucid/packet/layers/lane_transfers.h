@@ -114,7 +114,7 @@ Batch<float, N> kink_error(const LaneTransfers<N>& transfers, BatchMask<N> lanes
   using F = Batch<float, N>;
   F error(0);
   transfers.for_each(lanes, [&](const BinnedTransfer& transfer, BatchMask<N> same) noexcept {
-    if (!transfer.bends) return;
+    if (!transfer.has_color_breakpoints) return;
     const F own = color_kink_error(transfer, select(same, lower, F(0)), select(same, upper, F(0)));
     error = select(same, own, error);
   });

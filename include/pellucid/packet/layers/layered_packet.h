@@ -3,11 +3,11 @@
 
 #include "pellucid/error/random_errors.h"
 #include "pellucid/packet/cells/span_light.h"
+#include "pellucid/packet/lane_compositor.h"
 #include "pellucid/packet/layered_interface.h"
 #include "pellucid/packet/layers/lane_layer.h"
 #include "pellucid/packet/layers/piece_sum.h"
 #include "pellucid/packet/opacity_trace.h"
-#include "pellucid/packet/packet_fold.h"
 #include "pellucid/segment/lit_panel.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -17,8 +17,8 @@ namespace pellucid {
 /// tolerance; what a ray becomes depends on no other lane. What lies ahead of the rays comes in
 /// rows (layered_interface.h), and these in steps: where a layer's part is a run of cells, a step
 /// ends where a cell does; else it is the row. Of a step each lane takes piece by piece: up to
-/// where the extinction of a layer has a corner, or light has a kink, and halved where the budget
-/// cannot pay for its color. The depth of a piece is the sum of the layers', its color
+/// where the extinction of a layer has a breakpoint, or light has a kink, and halved where the
+/// budget cannot pay for its color. The depth of a piece is the sum of the layers', its color
 ///
 ///   Σ τ_l C_l / Σ τ_l,
 ///
@@ -41,7 +41,8 @@ class LayeredPacket {
       : layers_(job.layers),
         to_eye_{loaded(job.to_eye[0]), loaded(job.to_eye[1]), loaded(job.to_eye[2])},
         largest_color_(static_cast<float>(job.largest_color)),
-        fold_(loaded(job.tolerance), job.largest_extinction, job.largest_color, loaded(job.length)),
+        compositor_(loaded(job.tolerance), job.largest_extinction, job.largest_color,
+                    loaded(job.length)),
         trace_(job.depth != 0) {
     for (int k = 0; k < layers_; ++k) {
       new (&layer_[k]) Layer(job, k, to_eye_);
@@ -76,8 +77,8 @@ class LayeredPacket {
   }
 
   void store(const PellucidLayeredJob& job) const noexcept {
-    const SegmentResult<D> all = fold_.result();
-    const D error = fold_.error(convert<double>(pieces_ + by_caller_ + I(1)));
+    const SegmentResult<D> all = compositor_.result();
+    const D error = compositor_.error(convert<double>(pieces_ + by_caller_ + I(1)));
     for (int l = 0; l < job.count; ++l) {
       PellucidRayResult& r = job.results[l];
       r = light_of_lane(all, l);
@@ -95,10 +96,10 @@ class LayeredPacket {
   /// Limits behind which a row is left to the caller: the least share of a piece, and the number of
   /// pieces.
   static constexpr float narrowest = 1.0f / 512;
-  static constexpr int most_pieces = 40;
+  static constexpr int max_pieces = 40;
 
   template <class T>
-  static Batch<T, N> loaded(const T (&of_lane)[Row::most_lanes]) noexcept {
+  static Batch<T, N> loaded(const T (&of_lane)[Row::max_lanes]) noexcept {
     return Batch<T, N>::load(of_lane);
   }
 
@@ -131,7 +132,8 @@ class LayeredPacket {
     from_ = select(lanes, F(0), from_);
     step_begin_ = select(lanes, D(0), step_begin_);
     step_end_ = select(lanes, D(1), step_end_);
-    fold_.budget.set_remaining_length(select(lanes, left_, fold_.budget.remaining_length()));
+    compositor_.budget.set_remaining_length(
+        select(lanes, left_, compositor_.budget.remaining_length()));
     const M medium = is(Row::medium);
     if (any(medium)) begin_row(medium, at, head);
     if (all(medium | !lanes)) return;
@@ -195,7 +197,8 @@ class LayeredPacket {
       const F offset = convert<float>(begin - row_.begin), length = convert<float>(end - begin);
       length_ = select(stepping, length, length_);
       left_ = select(stepping, row_.left - offset, left_);
-      fold_.budget.set_remaining_length(select(stepping, left_, fold_.budget.remaining_length()));
+      compositor_.budget.set_remaining_length(
+          select(stepping, left_, compositor_.budget.remaining_length()));
       from_ = select(stepping, F(0), from_);
       const D whole = row_.end - row_.begin;
       step_begin_ = select(stepping, (begin - row_.begin) / whole, step_begin_);
@@ -236,22 +239,22 @@ class LayeredPacket {
 
   /// Returns the parts of a layer's rows.
   const float* parts_of(int layer) const noexcept {
-    return job_->part + layer * Row::most_lanes * Row::of_a_ray * Row::part_fields;
+    return job_->part + layer * Row::max_lanes * Row::of_a_ray * Row::part_fields;
   }
 
   /// Nothing of the lanes' rows absorbs after all.
   void leave_out(M lanes) noexcept {
     pending_ = pending_ & !lanes;
     const F error = largest_color_ * min(left_out_ * length_, F(1));
-    fold_.budget.spend(select(lanes, length_, F(0)), F(0), fold_.transparency(),
-                       select(lanes, error * F(1 + 8 * rounding_unit<float>), F(0)));
+    compositor_.budget.spend(select(lanes, length_, F(0)), F(0), compositor_.transparency(),
+                             select(lanes, error * F(1 + 8 * rounding_unit<float>), F(0)));
   }
 
   /// Meets what has no length, or is not seen.
   [[gnu::noinline]] void meet(M lanes, I kind, const F (&head)[Row::head_fields]) noexcept {
     if (none(lanes)) return;
     const auto is = [&](int one) noexcept { return lanes & (kind == I(one)); };
-    const F opacity = head[Row::opacity], transparency = fold_.transparency();
+    const F opacity = head[Row::opacity], transparency = compositor_.transparency();
     const M absent = is(Row::absent), surface = is(Row::surface), marks = is(Row::mark),
             doubts = is(Row::doubt);
     const I mark = convert<std::int32_t>(head[Row::mark_number]);
@@ -270,18 +273,18 @@ class LayeredPacket {
     error = select(surface, min(head[Row::error] + F(8 * rounding_unit<float>), F(1)), error);
     error = select(marks, F(0), error);
     const F through = select(surface, opacity, F(0));
-    fold_.budget.spend(
+    compositor_.budget.spend(
         select(absent, length_, F(0)), through, seen,
         select(lanes, largest_color_ * error * F(1 + 8 * rounding_unit<float>), F(0)));
     if (any(surface)) {
       // Of an opaque one everything is seen.
       const F depth = -log(max(F(1) - opacity, F(smallest_normal<float>)));
-      fold_.add(surface,
-                SegmentResult<F>{depth,
-                                 opacity,
-                                 F(1) - opacity,
-                                 {opacity * head[Row::color], opacity * head[Row::color + 1],
-                                  opacity * head[Row::color + 2]}});
+      compositor_.add(surface,
+                      SegmentResult<F>{depth,
+                                       opacity,
+                                       F(1) - opacity,
+                                       {opacity * head[Row::color], opacity * head[Row::color + 1],
+                                        opacity * head[Row::color + 2]}});
       pieces_ += select(surface, I(1), I(0));
     }
     retire(lanes);
@@ -319,28 +322,31 @@ class LayeredPacket {
     }
     const F length = ahead * place * length_;
     const F left = left_ - from_ * length_;
-    fold_.budget.set_remaining_length(select(on, left, fold_.budget.remaining_length()));
+    compositor_.budget.set_remaining_length(
+        select(on, left, compositor_.budget.remaining_length()));
     if (any(mixed)) integrate_mixed(mixed, found, place, to, length, sum);
     on = on & !mixed;
     found = found & on;
     if (none(on)) return;
     const F depth = sum.depth;
     SegmentResult<F> s = segment_of_depth(depth, Rgb<F>{});
-    const F transparency = fold_.transparency(), seen = transparency * s.opacity;
+    const F transparency = compositor_.transparency(), seen = transparency * s.opacity;
     // What is off whatever the color.
     const F range = min(sum.range(), F(2) * largest_color_);
     const F rounding = segment_rounding(s, F(32 * rounding_unit<float>), largest_color_,
                                         sum.depth_error, sum.color_rounding, range) +
                        largest_color_ * min(left_out_ * length, F(1));
     const F linear = transparency * rounding + seen * sum.color_error;
-    const typename RayBudget<F>::SpanShare shares = fold_.budget.span_share(length, s.opacity);
+    const typename RayBudget<F>::SpanShare shares =
+        compositor_.budget.span_share(length, s.opacity);
     const F allowed = shares.sum();
     const M affordable = found & (linear <= F(0.6f) * allowed);
 
     // The means of layers without light.
     const F of_means = seen * (range * mean_color_bound(depth));
     const M by_means = affordable & (!sum.lit) & (linear + of_means <= allowed);
-    const F largest = sampled_.largest_variance(fold_.budget, linear, s.opacity, length, left);
+    const F largest =
+        sampled_.largest_variance(compositor_.budget, linear, s.opacity, length, left);
     const NodeDeviations<N> deviations(range, sum.turns, sum.sharpness, depth);
     const typename LikeErrors<F>::Signs signs = sum.signs(range);
     const auto growth = [&](F deviation) noexcept {
@@ -358,15 +364,15 @@ class LayeredPacket {
     if (any(by_three)) color = select(by_three, nodes_color<3>(by_three, length), color);
     if (any(by_six)) color = select(by_six, nodes_color<6>(by_six, length), color);
     s.radiance = s.opacity * color;
-    fold_.add(take, s);
+    compositor_.add(take, s);
     const M by_nodes = by_three | by_six;
     if (any(by_nodes)) {
-      sampled_.charge(by_nodes, fold_.budget, select(by_six, variance, variance_by_three), linear,
-                      s.opacity, length, left, transparency);
+      sampled_.charge(by_nodes, compositor_.budget, select(by_six, variance, variance_by_three),
+                      linear, s.opacity, length, left, transparency);
       like_.add(by_nodes, signs, select(by_six, of_six, of_three));
     }
-    fold_.budget.spend(select(by_means, length, F(0)), shares,
-                       select(by_means, linear + of_means, F(0)));
+    compositor_.budget.spend(select(by_means, length, F(0)), shares,
+                             select(by_means, linear + of_means, F(0)));
     pieces_ += select(take, I(1), I(0));
     panels_ += select(by_nodes, I(1), I(0));
     proved_ = proved_ & !by_nodes;
@@ -379,7 +385,7 @@ class LayeredPacket {
   void halve(M lanes, M may_help, F place) noexcept {
     const F half = F(0.5f) * place;
     const M halved =
-        lanes & may_help & (tried_ < I(most_pieces)) & ((F(1) - from_) * half >= F(narrowest));
+        lanes & may_help & (tried_ < I(max_pieces)) & ((F(1) - from_) * half >= F(narrowest));
     cap_ = select(halved, half, cap_);
     wait_for_caller(lanes & !halved);
   }
@@ -408,25 +414,27 @@ class LayeredPacket {
         segment_of_depth(many.total, Rgb<F>{within(color.r, sum.lower.r, sum.upper.r),
                                             within(color.g, sum.lower.g, sum.upper.g),
                                             within(color.b, sum.lower.b, sum.upper.b)});
-    const F transparency = fold_.transparency();
+    const F transparency = compositor_.transparency();
     const F fixed = segment_rounding(s, F(32 * rounding_unit<float>), largest_color_,
                                      sum.depth_error, sum.color_rounding, range) +
                     largest_color_ * min(left_out_ * length, F(1)) + s.opacity * sum.color_error;
     const F linear = transparency * fixed, left = left_ - from_ * length_;
     const M affordable =
-        found & (linear <= F(0.6f) * fold_.budget.span_share(length, s.opacity).sum());
+        found & (linear <= F(0.6f) * compositor_.budget.span_share(length, s.opacity).sum());
     // Of nodes' errors, which add up as random ones do.
     const F deviation =
         transparency * (s.opacity * color_deviation + one_deviation * largest_color_ * depth_error);
     const typename LikeErrors<F>::Signs signs = sum.signs(range);
     const F variance = max(like_.variance_with(signs, deviation) - sampled_.variance(), F(0));
-    const F largest = sampled_.largest_variance(fold_.budget, linear, s.opacity, length, left);
+    const F largest =
+        sampled_.largest_variance(compositor_.budget, linear, s.opacity, length, left);
     const M take = on & affordable & (variance <= largest);
     const M rest = on & !take;
     if (any(rest)) halve(rest, affordable & (variance <= F(1e6f) * largest), place);
     if (none(take)) return;
-    fold_.add(take, s);
-    sampled_.charge(take, fold_.budget, variance, linear, s.opacity, length, left, transparency);
+    compositor_.add(take, s);
+    sampled_.charge(take, compositor_.budget, variance, linear, s.opacity, length, left,
+                    transparency);
     like_.add(take, signs, deviation);
     pieces_ += select(take, I(1), I(0));
     panels_ += select(take, I(1), I(0));
@@ -532,8 +540,8 @@ class LayeredPacket {
 
   /// Something was added to the lanes' rays: ends those that no longer matter.
   void retire(M lanes) noexcept {
-    trace_.note(lanes, fold_);
-    const M done = fold_.cut_off(lanes);
+    trace_.note(lanes, compositor_);
+    const M done = compositor_.cut_off(lanes);
     alive_ = alive_ & !done;
     pending_ = pending_ & !done;
     waits_ = waits_ & !done;
@@ -549,11 +557,11 @@ class LayeredPacket {
   void ask_caller() noexcept {
     const F length = (F(1) - from_) * length_;
     const D from = step_begin_ + convert<double>(from_) * (step_end_ - step_begin_);
-    fold_.budget.set_remaining_length(
-        select(waits_, left_ - from_ * length_, fold_.budget.remaining_length()));
-    const F transparency = fold_.transparency();
-    const F flat = fold_.budget.allowance(length, F(0), transparency),
-            all = fold_.budget.allowance(length, F(1), transparency);
+    compositor_.budget.set_remaining_length(
+        select(waits_, left_ - from_ * length_, compositor_.budget.remaining_length()));
+    const F transparency = compositor_.transparency();
+    const F flat = compositor_.budget.allowance(length, F(0), transparency),
+            all = compositor_.budget.allowance(length, F(1), transparency);
     for (unsigned left = bits(waits_); left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
       job_->from[l] = from[l];
@@ -567,16 +575,16 @@ class LayeredPacket {
   void take_handed() noexcept {
     if (none(waits_)) return;
     const M lanes = waits_;
-    HandedBack<N> found;
+    ScalarFallback<N> found;
     unsigned proved = 0;
     for (unsigned left = bits(lanes); left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
       found.set(l, job_->handed[l]);
       if (job_->handed[l].proved != 0) proved |= 1u << l;
     }
-    fold_.budget.set_remaining_length(
-        select(lanes, left_ - from_ * length_, fold_.budget.remaining_length()));
-    fold_.add(found, select(lanes, (F(1) - from_) * length_, F(0)));
+    compositor_.budget.set_remaining_length(
+        select(lanes, left_ - from_ * length_, compositor_.budget.remaining_length()));
+    compositor_.add(found, select(lanes, (F(1) - from_) * length_, F(0)));
     by_caller_ += select(lanes, I(1), I(0));
     proved_ = proved_ & (M::from_bits(proved) | !lanes);
     waits_ = M(false);
@@ -588,7 +596,7 @@ class LayeredPacket {
   F largest_color_;
   PellucidLayeredJob* job_ = nullptr;
   union {
-    Layer layer_[Row::most_layers];
+    Layer layer_[Row::max_layers];
   };
 
   /// Rows that lanes take in steps.
@@ -617,7 +625,7 @@ class LayeredPacket {
 
   SampledErrors<F> sampled_;
   LikeErrors<F> like_;
-  PacketFold<N> fold_;
+  LaneCompositor<N> compositor_;
   OpacityTrace<N> trace_;
   M proved_{true};
   I rows_{0}, pieces_{0}, panels_{0}, by_caller_{0};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/mesh/face_place.h"
+#include "pellucid/packet/mesh/face_hit.h"
 #include "pellucid/packet/mesh/mesh_rays.h"
 #include "pellucid/packet/mesh/mesh_rows.h"
 #include "pellucid/traverse/mesh_spans.h"
@@ -79,7 +79,7 @@ class MeshMarch {
   [[gnu::flatten]] M find_span(Rows& rows, int at, Absorbs&& absorbs) noexcept {
     const M on = walking;
     const SeenFace<T>& face = walk_.face();
-    const FacePlace<S, N> place(face, blur_);
+    const FaceHit<S, N> place(face, blur_);
     const ProjectedPoint<T>* p = face.seen;
     F t_error;
     const T t = place.interpolate(p[0].t, p[1].t, p[2].t, t_error);
@@ -220,7 +220,7 @@ class MeshMarch {
       face.carried[i] = T::load(all.value[i]);
     }
     face.left = M::from_bits(turned);
-    const FacePlace<S, N> place(face, blur_);
+    const FaceHit<S, N> place(face, blur_);
     const ProjectedPoint<T>* p = face.seen;
     F t_error;
     const T t = place.interpolate(p[0].t, p[1].t, p[2].t, t_error);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pellucid/packet/lane_compositor.h"
 #include "pellucid/packet/lane_spans.h"
 #include "pellucid/packet/mesh/mesh_march.h"
 #include "pellucid/packet/mesh/mesh_variable.h"
 #include "pellucid/packet/opacity_trace.h"
-#include "pellucid/packet/packet_fold.h"
 #include "pellucid/segment/linear.h"
 #include "pellucid/transfer/binned.h"
 
@@ -16,10 +16,10 @@ namespace pellucid {
 /// tolerance. What a ray becomes depends on no other lane.
 ///
 /// The rays go ahead some steps at a time (MeshMarch); then each lane takes the spans of its ray
-/// that absorb, piece by piece: cut where the extinction has a corner, each is Moreland's integral
-/// of linear extinction and color. Where the color has corners of its own, its line between the
-/// ends stands for it as far as the budget pays for that. What binary32 is not good enough for is
-/// handed back.
+/// that absorb, piece by piece: cut where the extinction has a breakpoint, each is Moreland's
+/// integral of linear extinction and color. Where the color has breakpoints of its own, its line
+/// between the ends stands for it as far as the budget pays for that. What binary32 is not good
+/// enough for is handed back.
 ///
 /// S: the numbers that the rays see the mesh in. With float a ray that is beyond its tolerance is
 /// to be followed again in double.
@@ -31,17 +31,17 @@ class MeshPacket {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
   /// Workspace that many packets use one after the other.
-  using Room = typename MeshVariable<S, N>::Rows;
+  using Workspace = typename MeshVariable<S, N>::Rows;
 
-  MeshPacket(const PellucidMeshJob& job, Room& rows, int first, int count) noexcept
+  MeshPacket(const PellucidMeshJob& job, Workspace& rows, int first, int count) noexcept
       : job_(job),
         transfer_(*seen(job.transfer)),
         rows_(rows),
         first_(first),
         count_(count),
         march_(job, first, count),
-        fold_(job.tolerance, transfer_.largest_extinction, job.largest_color,
-              max(convert<float>(march_.rays.end - march_.rays.begin), F(0))),
+        compositor_(job.tolerance, transfer_.largest_extinction, job.largest_color,
+                    max(convert<float>(march_.rays.end - march_.rays.begin), F(0))),
         trace_(job.depth != 0),
         largest_color_(static_cast<float>(job.largest_color)) {
     std::int32_t lane[N];
@@ -60,7 +60,7 @@ class MeshPacket {
       }
     };
     while (any_of(packets, walking)) {
-      for (int s = 0; s < Room::steps && any_of(packets, walking); ++s) {
+      for (int s = 0; s < Workspace::steps && any_of(packets, walking); ++s) {
         each([](MeshPacket& p) { p.march_.cross(); });
         each([](MeshPacket& p) { p.march_.load_ahead(); });
         each([](MeshPacket& p) { p.march_.see_ahead(); });
@@ -80,9 +80,9 @@ class MeshPacket {
   }
 
   void store(PellucidRayResult* results) const noexcept {
-    const SegmentResult<D> all = fold_.result();
+    const SegmentResult<D> all = compositor_.result();
     const D error =
-        fold_.error(convert<double>(pieces_)) +
+        compositor_.error(convert<double>(pieces_)) +
         D(job_.largest_color) *
             min(D(job_.largest_extinction) * convert<double>(march_.beside_vacuum), D(1));
     for (int l = 0; l < count_; ++l) {
@@ -112,7 +112,7 @@ class MeshPacket {
     cells_ += select(march_.walking, I(1), I(0));
     using Span = typename MeshVariable<S, N>::Span;
     const M found =
-        march_.put_down(rows_, s, [this](const Span& span, Room&, int, I& note) noexcept {
+        march_.put_down(rows_, s, [this](const Span& span, Workspace&, int, I& note) noexcept {
           const F rounding = span.rounding();
           return absorbs(span.least() - rounding, span.most() + rounding, note);
         });
@@ -125,12 +125,12 @@ class MeshPacket {
   static constexpr float farthest = 1.0f / 8;
   /// Fraction of the remaining budget that a piece may take for rounding, which shorter pieces have
   /// as well, and so has binary64 where what it is handed is known to binary32 only.
-  static constexpr float for_rounding = Room::more_exact ? 0.0f : 0.25f;
+  static constexpr float for_rounding = Workspace::more_exact ? 0.0f : 0.25f;
 
   M absorbs(F least, F most, I& note) const noexcept {
     M jumps;
     const M found = may_absorb(transfer_, M(true), least, most, jumps);
-    note += select(jumps, I(SpanNote::handed_back), I(0));
+    note += select(jumps, I(SpanNote::scalar_fallback), I(0));
     return found;
   }
 
@@ -156,7 +156,7 @@ class MeshPacket {
     });
     // Where the data go on from where they were, so do extinction and color.
     located_ = located_ & !(lanes & (front_ != was));
-    handed_back_ = handed_back_ | (lanes & (note > I(0)));
+    scalar_fallback_ = scalar_fallback_ | (lanes & (note > I(0)));
     span_length_ = select(lanes, length_, span_length_);
     from_ = select(lanes, F(0), from_);
     cap_ = select(lanes, F(1), cap_);
@@ -167,9 +167,9 @@ class MeshPacket {
 
   /// Finds the end of the piece, and the color there.
   [[gnu::flatten]] void find_end() noexcept {
-    if (any(handed_back_)) {
-      hand_back(handed_back_);
-      handed_back_ = M(false);
+    if (any(scalar_fallback_)) {
+      fall_back_to_scalar(scalar_fallback_);
+      scalar_fallback_ = M(false);
     }
     const M on = spans_.pending;
     if (none(on)) return;
@@ -219,10 +219,10 @@ class MeshPacket {
     const SegmentResult<F>& s = segment_;
     const F least = min(front_, end), most = max(front_, end), range = most - least;
     F color_error(0);
-    if (transfer_.bends) {
+    if (transfer_.has_color_breakpoints) {
       // A kink at k moves a line between a and b by no more than (k - a)(b - k)/(b - a).
-      const F bend = color_slope_change(transfer_, least, most);
-      color_error = s.opacity * min(F(0.25f) * (bend * range), interval.color_range);
+      const F slope_change = color_slope_change(transfer_, least, most);
+      color_error = s.opacity * min(F(0.25f) * (slope_change * range), interval.color_range);
     }
     // What rounding can do, as in PacketIntegrator.
     constexpr float u = rounding_unit<float>;
@@ -255,16 +255,17 @@ class MeshPacket {
                        colors * min(interval.largest * place_error_, s.opacity) +
                        largest_color_ * opacity_rounding + colors * min(depth_error, F(1));
 
-    fold_.budget.set_remaining_length(
-        select(on, left_ - from_ * span_length_, fold_.budget.remaining_length()));
-    const F transparency = fold_.transparency();
-    const typename RayBudget<F>::SpanShare shares = fold_.budget.span_share(length, s.opacity);
+    compositor_.budget.set_remaining_length(
+        select(on, left_ - from_ * span_length_, compositor_.budget.remaining_length()));
+    const F transparency = compositor_.transparency();
+    const typename RayBudget<F>::SpanShare shares =
+        compositor_.budget.span_share(length, s.opacity);
     const F cost = transparency * (color_error + rounding);
     const M known = value_error < F(transfer_.narrowest);
     const M take =
         on & known &
         ((cost <= shares.sum()) | ((transparency * color_error <= F(0.5f) * shares.sum()) &
-                                   (cost <= F(for_rounding) * fold_.budget.remaining())));
+                                   (cost <= F(for_rounding) * compositor_.budget.remaining())));
     const M rest = on & !take;
     if (any(rest)) {
       const F half = F(0.5f) * place;
@@ -273,11 +274,11 @@ class MeshPacket {
                       (transparency * rounding <= F(0.25f) * shares.sum());
       cap_ = select(halve, half, cap_);
       const M other = rest & !halve;
-      if (any(other)) hand_back(other);
+      if (any(other)) fall_back_to_scalar(other);
     }
     if (none(take)) return;
-    fold_.add(take, s);
-    fold_.budget.spend(select(take, length, F(0)), shares, select(take, cost, F(0)));
+    compositor_.add(take, s);
+    compositor_.budget.spend(select(take, length, F(0)), shares, select(take, cost, F(0)));
     pieces_ += select(take, I(1), I(0));
 
     front_ = select(take, end, front_);
@@ -325,24 +326,24 @@ class MeshPacket {
 
   /// Something was added to the lanes' rays: ends those that no longer matter.
   void retire(M lanes) noexcept {
-    trace_.note(lanes, fold_);
-    const M done = fold_.cut_off(lanes);
+    trace_.note(lanes, compositor_);
+    const M done = compositor_.cut_off(lanes);
     if (none(done)) return;
     march_.stop(done);
     spans_.forget(done);
   }
 
   /// Has what is left of the lanes' spans integrated by other means.
-  void hand_back(M lanes) noexcept {
+  void fall_back_to_scalar(M lanes) noexcept {
     lanes = lanes & spans_.pending;
-    fold_.budget.set_remaining_length(
-        select(lanes, left_ - from_ * span_length_, fold_.budget.remaining_length()));
-    HandedBack<N> handed_back;
+    compositor_.budget.set_remaining_length(
+        select(lanes, left_ - from_ * span_length_, compositor_.budget.remaining_length()));
+    ScalarFallback<N> scalar_fallback;
     for (int l = 0; l < N; ++l) {
       if ((bits(lanes) >> l & 1) == 0) continue;
       const int row = row_[l];
       if ((rows_.code[row] & SpanNote::overlaps) != 0) {
-        handed_back.error[l] = job_.largest_color;  // anything may be there
+        scalar_fallback.error[l] = job_.largest_color;  // anything may be there
         continue;
       }
       const auto [front, back, length, off_by] = exact_span(row);
@@ -358,9 +359,9 @@ class MeshPacket {
                                     static_cast<double>(end_error_[l]) + off * length};
       PellucidCellResult result;
       job_.integrate_span(job_.context, &span, &result);
-      handed_back.set(l, result);
+      scalar_fallback.set(l, result);
     }
-    fold_.add(handed_back, select(lanes, length_, F(0)));
+    compositor_.add(scalar_fallback, select(lanes, length_, F(0)));
     pieces_ += select(lanes, I(1), I(0));
     in_double_ += select(lanes, I(1), I(0));
     spans_.pending = spans_.pending & !lanes;
@@ -376,7 +377,7 @@ class MeshPacket {
                        static_cast<double>(numbers.back[row]),
                        static_cast<double>(numbers.length[row]), static_cast<double>(error[row])};
     };
-    if constexpr (Room::more_exact) {
+    if constexpr (Workspace::more_exact) {
       return span(rows_.exact, rows_.exact.error);
     } else {
       return span(rows_, rows_.rounding);
@@ -385,7 +386,7 @@ class MeshPacket {
 
   const PellucidMeshJob& job_;
   const BinnedTransfer& transfer_;
-  Room& rows_;
+  Workspace& rows_;
   int first_, count_;
   MeshMarch<S, N, MeshVariable<S, N>> march_;
   I lane_;
@@ -393,8 +394,8 @@ class MeshPacket {
   LaneSpans<N> spans_;
 
   // The span that a lane works on.
-  M handed_back_{false};  ///< those of them that are not for the rule here
-  M located_{false};      ///< whether `interval_` and the color at the front are known
+  M scalar_fallback_{false};  ///< those of them that are not for the rule here
+  M located_{false};          ///< whether `interval_` and the color at the front are known
   I row_{0}, interval_{0};
   F front_{0}, back_{0};  ///< data, of what is left of it
   F left_{0};             ///< of the ray, from the span's begin on, world length
@@ -415,7 +416,7 @@ class MeshPacket {
   Piece piece_;
   SegmentResult<F> segment_;
 
-  PacketFold<N> fold_;
+  LaneCompositor<N> compositor_;
   OpacityTrace<N> trace_;
   F largest_color_;
   I cells_{0}, pieces_{0}, in_double_{0};

@@ -25,7 +25,7 @@ class MeshRays {
     std::int32_t code;
   };
   /// Largest number of hits of one ray; rays with more are not for lanes.
-  static constexpr int most_hits = 48;
+  static constexpr int max_hits = 48;
 
   MeshRays(const PellucidMeshJob& job, int first, int count) noexcept
       : mesh_(*seen(job.mesh)), points_(seen(job.points)) {
@@ -222,7 +222,7 @@ class MeshRays {
                                    weight[2] * (face.seen[2].t - face.seen[0].t));
     for (unsigned left = bits(through); left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
-      if (hits_[l] == most_hits) {
+      if (hits_[l] == max_hits) {
         crowded = crowded | M::from_bits(1u << l);
       } else {
         hit_[l][hits_[l]++] = {at[l], code};
@@ -237,7 +237,7 @@ class MeshRays {
   RayFrame<double> view_of_[N];
   S from_of_[N], until_of_[N];
   int hits_[N], next_[N];
-  Hit hit_[N][most_hits];
+  Hit hit_[N][max_hits];
 };
 
 }  // namespace pellucid

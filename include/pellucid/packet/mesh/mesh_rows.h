@@ -8,7 +8,7 @@ namespace pellucid {
 
 /// Flags of a span of a row.
 struct SpanNote {
-  static constexpr std::int32_t handed_back = 1, overlaps = 2;
+  static constexpr std::int32_t scalar_fallback = 1, overlaps = 2;
 };
 
 /// Rows of what rays find ahead of them, spans of data: those of a step beside each other.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/mesh/face_place.h"
+#include "pellucid/packet/mesh/face_hit.h"
 #include "pellucid/packet/mesh/mesh_rows.h"
 #include "pellucid/packet/mesh_interface.h"
 
@@ -71,7 +71,7 @@ class MeshVariable {
   static void cross(const M* /*dropped*/) noexcept {}
 
   /// Rays come to a face, by the first one of their way.
-  void begin(M on, const SeenFace<T>& face, const FacePlace<S, N>& place) noexcept {
+  void begin(M on, const SeenFace<T>& face, const FaceHit<S, N>& place) noexcept {
     const T* v = face.carried;
     F error;
     const T value = place.interpolate(v[0], v[1], v[2], error);
@@ -79,7 +79,7 @@ class MeshVariable {
     error_ = select(on, error, error_);
   }
   /// Returns the span of the tetrahedron in front of the face.
-  Span reach(const SeenFace<T>& face, const FacePlace<S, N>& place, I tetrahedron) noexcept {
+  Span reach(const SeenFace<T>& face, const FaceHit<S, N>& place, I tetrahedron) noexcept {
     if (field_.per_cell) {
       const T value = load_values<S>(field_.value, tetrahedron);
       return {value, value, error_};

@@ -52,7 +52,7 @@ class MeshVariables {
   }
 
   /// Rays come to a face, by the first one of their way.
-  void begin(M on, const SeenFace<T>& face, const FacePlace<double, N>& place) noexcept {
+  void begin(M on, const SeenFace<T>& face, const FaceHit<double, N>& place) noexcept {
     for (int i = 0; i < 3; ++i) {
       T loaded[max_channels];
       load(face.point[i], loaded);
@@ -66,7 +66,7 @@ class MeshVariables {
     }
   }
   /// Returns the span of the tetrahedron in front of the face.
-  Span& reach(const SeenFace<T>& /*face*/, const FacePlace<double, N>& place,
+  Span& reach(const SeenFace<T>& /*face*/, const FaceHit<double, N>& place,
               I tetrahedron) noexcept {
     Span& span = span_;
     span.channels = fields_.channels;
@@ -125,7 +125,7 @@ class MeshVariables {
       for (int k = 0; k < here; ++k) values[first + k] = four[k];
     }
   }
-  T value_on(const FacePlace<double, N>& place, int channel, F& error) const noexcept {
+  T value_on(const FaceHit<double, N>& place, int channel, F& error) const noexcept {
     return place.interpolate(corner_[0][channel], corner_[1][channel], corner_[2][channel], error);
   }
 

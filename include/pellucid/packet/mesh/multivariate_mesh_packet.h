@@ -22,19 +22,20 @@ class MultivariateMeshPacket {
   using M = BatchMask<N>;
   using Variables = MeshVariables<N>;
   using Panels = PanelLanes<N, LinearBernstein, ClosedPanels<N>>;
-  using Room = typename Panels::Room;
+  using Workspace = typename Panels::Workspace;
 
-  MultivariateMeshPacket(const PellucidMeshJob& job, Room& room, int first, int count) noexcept
+  MultivariateMeshPacket(const PellucidMeshJob& job, Workspace& workspace, int first,
+                         int count) noexcept
       : job_(job),
         mixture_(*seen(job.mixture)),
         transfer_(mixture_.transfer),
-        rows_(room.rows),
+        rows_(workspace.rows),
         first_(first),
         count_(count),
         march_(job, first, count),
         lanes_(mixture_, job.tolerance, job.largest_color, job.largest_extinction, job.proved != 0,
                job.depth != 0, max(convert<float>(march_.rays.end - march_.rays.begin), F(0)),
-               room) {}
+               workspace) {}
 
   void run() noexcept {
     while (any(march_.walking)) {
@@ -154,7 +155,7 @@ class MultivariateMeshPacket {
   }
 
   const PellucidMeshJob& job_;
-  const NearMixture& mixture_;
+  const CulledMixture& mixture_;
   const MultivariateTransfer<double>& transfer_;
   typename Panels::Rows& rows_;
   int first_, count_;

@@ -46,22 +46,22 @@ class MultivariateSampler {
   }
 
   void store(PellucidRayResult* results) const noexcept {
-    const D opacity = fold_.opacity();
+    const D opacity = compositor_.opacity();
     for (int l = 0; l < count_; ++l) {
       PellucidRayResult& r = results[first_ + l];
       r = {};
-      r.radiance[0] = fold_.radiance().r[l];
-      r.radiance[1] = fold_.radiance().g[l];
-      r.radiance[2] = fold_.radiance().b[l];
+      r.radiance[0] = compositor_.radiance().r[l];
+      r.radiance[1] = compositor_.radiance().g[l];
+      r.radiance[2] = compositor_.radiance().b[l];
       r.opacity = opacity[l];
-      r.optical_depth = fold_.optical_depth()[l];
+      r.optical_depth = compositor_.optical_depth()[l];
       r.cells = taken_[l];
     }
   }
 
  private:
   using Steps = SamplerSteps<N>;
-  static constexpr int most = Steps::most_at_once;
+  static constexpr int most = Steps::max_at_once;
 
   template <int K>
   PELLUCID_ALWAYS_INLINE void run_by() noexcept {
@@ -99,14 +99,14 @@ class MultivariateSampler {
         const Attenuation<F> a = attenuation(depth);
         const F share = a.opacity / max(here.extinction, F(smallest_normal<float>));
         const Rgb<F> radiance = share * here.emission;
-        fold_.add(a.opacity, a.transparency,
-                  {select(found[k], radiance.r, F(0)), select(found[k], radiance.g, F(0)),
-                   select(found[k], radiance.b, F(0))});
-        fold_.add_depth(depth);
+        compositor_.add(a.opacity, a.transparency,
+                        {select(found[k], radiance.r, F(0)), select(found[k], radiance.g, F(0)),
+                         select(found[k], radiance.b, F(0))});
+        compositor_.add_depth(depth);
       }
-      fold_.fold();
+      compositor_.fold();
       steps_.index += I(K);
-      steps_.alive = steps_.alive & (fold_.transparency() > D(stop_));
+      steps_.alive = steps_.alive & (compositor_.transparency() > D(stop_));
     }
   }
 
@@ -143,7 +143,7 @@ class MultivariateSampler {
   int first_, count_;
   Steps steps_;
   MultichannelSamples<N> samples_;
-  SamplerFold<N> fold_;
+  SamplerFold<N> compositor_;
   I taken_;
 };
 

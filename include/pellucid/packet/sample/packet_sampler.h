@@ -86,8 +86,8 @@ class PacketSampler {
       for (int i = 0; i < steps; ++i) {
         if (none(found[i])) continue;
         const Attenuation<F> a = attenuation(depth[i]);
-        fold_.add(a.opacity, a.transparency, a.opacity * color[i]);
-        fold_.add_depth(depth[i]);
+        compositor_.add(a.opacity, a.transparency, a.opacity * color[i]);
+        compositor_.add_depth(depth[i]);
       }
       end_steps();
     }
@@ -134,7 +134,7 @@ class PacketSampler {
         }
         radiance = share * radiance;
         if (light_.is_lit()) light_step(opacity, radiance, begin, place, length, i);
-        fold_.add(opacity, F(1) - opacity, radiance);
+        compositor_.add(opacity, F(1) - opacity, radiance);
       }
       front = value[steps];
       end_steps();
@@ -143,26 +143,26 @@ class PacketSampler {
   }
 
   void store(PellucidRayResult* results) const noexcept {
-    const D opacity = fold_.opacity();
+    const D opacity = compositor_.opacity();
     for (int l = 0; l < count_; ++l) {
       PellucidRayResult& r = results[first_ + l];
       r = {};
-      r.radiance[0] = fold_.radiance().r[l];
-      r.radiance[1] = fold_.radiance().g[l];
-      r.radiance[2] = fold_.radiance().b[l];
+      r.radiance[0] = compositor_.radiance().r[l];
+      r.radiance[1] = compositor_.radiance().g[l];
+      r.radiance[2] = compositor_.radiance().b[l];
       r.opacity = opacity[l];
-      r.optical_depth = by_opacity_ ? -log1p(-opacity[l]) : fold_.optical_depth()[l];
+      r.optical_depth = by_opacity_ ? -log1p(-opacity[l]) : compositor_.optical_depth()[l];
       r.cells = samples_[l];
     }
   }
 
  private:
-  static constexpr int most = SamplerMarch<N>::most_at_once;
+  static constexpr int most = SamplerMarch<N>::max_at_once;
 
   void end_steps() noexcept {
-    fold_.fold();
+    compositor_.fold();
     march_.index += I(march_.steps_at_once);
-    march_.alive = march_.alive & (fold_.transparency() > D(stop_));
+    march_.alive = march_.alive & (compositor_.transparency() > D(stop_));
   }
 
   /// Multiplies a step by the light in its middle, and its depth by the factor there.
@@ -220,7 +220,7 @@ class PacketSampler {
   int first_, count_;
   SamplerMarch<N> march_;
   SampleLight<N> light_;
-  SamplerFold<N> fold_;
+  SamplerFold<N> compositor_;
   I samples_;
 };
 

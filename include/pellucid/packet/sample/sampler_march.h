@@ -8,7 +8,7 @@
 namespace pellucid {
 
 /// Rays in lanes that take steps of one length, and the data around them. Places are found in
-/// double at the beginning of every few steps, and in float from there (sample_places.h).
+/// double at the beginning of every few steps, and in float from there (step_positions.h).
 template <int N>
 class SamplerMarch : public SamplerSteps<N> {
  public:
@@ -31,8 +31,8 @@ class SamplerMarch : public SamplerSteps<N> {
 
   /// The data at as many world lengths from the anchor as steps are gone at once; NaN in vacuum.
   PELLUCID_ALWAYS_INLINE void sample(const F* offset, F* value) const noexcept {
-    if (Steps::steps_at_once == Steps::most_at_once) {
-      samples_.template sample<Steps::most_at_once>(offset, value);
+    if (Steps::steps_at_once == Steps::max_at_once) {
+      samples_.template sample<Steps::max_at_once>(offset, value);
     } else {
       samples_.template sample<1>(offset, value);
     }

@@ -21,7 +21,7 @@ class SamplerSteps : public RaysInBlocks<N> {
   M alive;  ///< whether a lane's ray is not yet through
   I index;  ///< of the step that each lane stands at
   using Rays::end;
-  static constexpr int most_at_once = 8;
+  static constexpr int max_at_once = 8;
   int steps_at_once;
 
   /// Rays of lanes beyond `count` are not alive.
@@ -31,7 +31,7 @@ class SamplerSteps : public RaysInBlocks<N> {
     for (int l = 0; l < count; ++l) {
       for (const double d : rays[l].direction) largest = max(largest, max(d, -d) * step);
     }
-    steps_at_once = largest <= 4 ? most_at_once : 1;
+    steps_at_once = largest <= 4 ? max_at_once : 1;
     index = I(0);
     alive = end > D(0);
   }

@@ -19,12 +19,12 @@ struct SamplerTransfer {
   /// Per bin, and once more, in two numbers that are to be added: of the control points below its
   /// lower edge the squares, summed, of what their slopes change by: of extinction times the
   /// largest color, and of colors times the extinction there, largest channel.
-  const float* corners = nullptr;
-  /// The same of each control point, where there are few at which slopes change; else `corners`
+  const float* breakpoints = nullptr;
+  /// The same of each control point, where there are few at which slopes change; else `breakpoints`
   /// says it in less time.
-  static constexpr int most_corners = 4;
-  int few_corners = most_corners + 1;  ///< how many, and one more if there are too many
-  float corner[most_corners] = {}, square[most_corners] = {};
+  static constexpr int max_breakpoints = 4;
+  int few_breakpoints = max_breakpoints + 1;  ///< how many, and one more if there are too many
+  float breakpoint[max_breakpoints] = {}, square[max_breakpoints] = {};
   float origin = 0, bins_per_value = 0;
   float bin_count = 0, bins_end = 0;       ///< how many, and just below that
   float support_min = 0, support_max = 0;  ///< nothing absorbs outside; crossed over: nowhere
@@ -54,7 +54,7 @@ Material<Batch<float, N>> material_on_lines(const SamplerTransfer& t, Batch<std:
 
 }  // namespace detail
 
-/// Returns the sum of squares of SamplerTransfer::corners over the control points between two
+/// Returns the sum of squares of SamplerTransfer::breakpoints over the control points between two
 /// values: where there are few, and a bin beside; else and up to two bins beside, with 2^-44 of
 /// that of all points below, for what their sum has lost.
 template <int N>
@@ -62,12 +62,12 @@ Batch<float, N> corners_between(const SamplerTransfer& t, Batch<float, N> least,
                                 Batch<float, N> most) noexcept {
   using F = Batch<float, N>;
   using I = Batch<std::int32_t, N>;
-  if (t.few_corners <= SamplerTransfer::most_corners) {
+  if (t.few_breakpoints <= SamplerTransfer::max_breakpoints) {
     const F bin = F(1) / F(t.bins_per_value), from = least - bin, to = most + bin;
     F sum(0);
-    for (int i = 0; i < t.few_corners; ++i) {
-      const F corner(t.corner[i]);
-      sum += select((from <= corner) & (corner <= to), F(t.square[i]), F(0));
+    for (int i = 0; i < t.few_breakpoints; ++i) {
+      const F breakpoint(t.breakpoint[i]);
+      sum += select((from <= breakpoint) & (breakpoint <= to), F(t.square[i]), F(0));
     }
     return sum;
   }
@@ -76,9 +76,10 @@ Batch<float, N> corners_between(const SamplerTransfer& t, Batch<float, N> least,
     return I(2) * convert<std::int32_t>(clamp(place, F(0), F(t.bin_count)));
   };
   const I first = at(least, -1), last = at(most, 2);
-  const F below = gather(t.corners, last);
-  return (below - gather(t.corners, first)) +
-         (gather(t.corners, last + I(1)) - gather(t.corners, first + I(1))) + F(0x1p-44f) * below;
+  const F below = gather(t.breakpoints, last);
+  return (below - gather(t.breakpoints, first)) +
+         (gather(t.breakpoints, last + I(1)) - gather(t.breakpoints, first + I(1))) +
+         F(0x1p-44f) * below;
 }
 
 /// The material at values that are no NaN. Error: 4 u of the largest extinction and color of the

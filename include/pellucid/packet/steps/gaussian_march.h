@@ -5,8 +5,8 @@
 #include "pellucid/packet/blocks/rays_in_blocks.h"
 #include "pellucid/packet/steps/multichannel_samples.h"
 #include "pellucid/packet/steps/resolved_gaussians.h"
-#include "pellucid/traverse/block_bends.h"
 #include "pellucid/traverse/block_variation.h"
+#include "pellucid/traverse/curvature_bounds.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
@@ -56,7 +56,7 @@ class GaussianMarch {
     at = select(lanes, D(0), at);
     known_ = known_ & !lanes;
     seen_ = select(lanes, F(0), seen_);
-    shortest_wave_ = select(lanes, F(0), shortest_wave_);
+    max_frequency_ = select(lanes, F(0), max_frequency_);
     for (int a = 0; a < 3; ++a) {
       bends_[a] = select(lanes, F(0), bends_[a]);
       bends_at_ends_[a] = select(lanes, F(0), bends_at_ends_[a]);
@@ -144,7 +144,7 @@ class GaussianMarch {
     const F beside = F(position_error) / (s.step * fastest_) * s.ends.steepest;
     variance = multiply_add(F(4) * beside, beside, variance);
     // Two rules agree by chance now and then.
-    const F chance = F(least_share) * s.ends.coarse;
+    const F chance = F(min_share) * s.ends.coarse;
     variance = multiply_add(chance, chance, variance);
     s.least_variance = s.step * s.step * variance;
   }
@@ -173,7 +173,7 @@ class GaussianMarch {
     }
     const I block = rays_.block_at(at + convert<double>(F(0.5f) * s.length));
     const F waves = gather(waves_, select(lanes, block, I(0)));
-    shortest_wave_ = max(shortest_wave_, select(lanes, waves, F(0)));
+    max_frequency_ = max(max_frequency_, select(lanes, waves, F(0)));
   }
   /// RayResult::neighbor_deviation and longest_step of what was noted, in units of the largest
   /// color.
@@ -185,7 +185,7 @@ class GaussianMarch {
     }
     return sqrt(variance);
   }
-  F longest_step_between() const noexcept { return F(1) / shortest_wave_; }
+  F longest_step_between() const noexcept { return F(1) / max_frequency_; }
 
   /// Has these lanes look again, in finer steps; from the first in which something matters. Those
   /// that are returned cannot.
@@ -216,12 +216,12 @@ class GaussianMarch {
   /// different places in cells. Shorter ones change from look to look.
   static constexpr float longest_step = 1.87f;
   static constexpr float shortest_step = 0x1p-13f;
-  /// Cells: what sample_places.h says of so short ways, as a standard deviation at most.
+  /// Cells: what step_positions.h says of so short ways, as a standard deviation at most.
   static constexpr float position_error = 1e-6f;
   /// Fraction that counts as the least standard deviation, of the largest error of Simpson's rule
   /// on four steps over a Gaussian, which is 0.27 times the fourth power of how far it moves in
   /// one.
-  static constexpr float least_share = 0.01f;
+  static constexpr float min_share = 0.01f;
 
   void find_front() noexcept {
     const F here(0);
@@ -278,18 +278,19 @@ class GaussianMarch {
       const auto high = [&](I x) noexcept { return float_of_bits(x & upper_half); };
       const F oscillation[3] = {low(packed[0]), high(packed[0]), low(packed[1])},
               twist[3] = {low(packed[3]), low(packed[3]), low(packed[3])};
-      F(&bend)[3] = around_.bend[c];
-      bend[0] = high(packed[1]);
-      bend[1] = low(packed[2]);
-      bend[2] = high(packed[2]);
+      F(&second_difference)[3] = around_.second_difference[c];
+      second_difference[0] = high(packed[1]);
+      second_difference[1] = low(packed[2]);
+      second_difference[2] = high(packed[2]);
       F on_the_way(0);
       for (int a = 0; a < 3; ++a) {
         // An axis along which nothing moves does not count, even if unbounded.
-        const F range = blocks * oscillation[a] + select(leaves[a], bend[a], F(0));
+        const F range = blocks * oscillation[a] + select(leaves[a], second_difference[a], F(0));
         on_the_way += select(speed[a] > F(0), speed[a] * range, F(0));
       }
-      around_.oscillation[c] = min(on_the_way * F(1 + 32 * rounding_unit<float>),
-                                   derivative_variation(bend, twist, speed, planes, step));
+      around_.oscillation[c] =
+          min(on_the_way * F(1 + 32 * rounding_unit<float>),
+              derivative_variation(second_difference, twist, speed, planes, step));
     }
     near_.clear();
     add_primitives(block, alive);
@@ -358,7 +359,7 @@ class GaussianMarch {
   // What was noted: length, by the square of what is seen of it, and likewise squares of
   // ResolvedGaussians::bending over length, and those where the rays begin and end; and the largest
   // of 1 / the longest step.
-  F seen_, bends_[3], bends_at_ends_[3], shortest_wave_;
+  F seen_, bends_[3], bends_at_ends_[3], max_frequency_;
 };
 
 }  // namespace pellucid

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "pellucid/packet/gaussian_packet_interface.h"
+#include "pellucid/packet/lane_compositor.h"
 #include "pellucid/packet/opacity_trace.h"
-#include "pellucid/packet/packet_fold.h"
 #include "pellucid/packet/steps/gaussian_march.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -54,8 +54,8 @@ class GaussianPacket {
   /// Fraction of the difference of two rules that counts as the standard deviation of the better
   /// one: more than in smooth stretches, for all of a narrow primitive may lie in a few steps.
   static constexpr float share_of_difference = 0.8f;
-  /// Rays that need more are given up: PacketFold keeps back what so many cost.
-  static constexpr int most_looks = 1 << 14;
+  /// Rays that need more are given up: LaneCompositor keeps back what so many cost.
+  static constexpr int max_looks = 1 << 14;
 
   /// Gives these lanes the next rays; false: there are none, and no lane has any.
   bool begin_rays(M lanes) noexcept {
@@ -68,9 +68,9 @@ class GaussianPacket {
     }
     if (none(given)) return any(march_.alive);
     march_.begin(given, lane_ray_);
-    const PacketFold<N> nothing(rays_.tolerance, rays_.largest_extinction, rays_.largest_color,
-                                convert<float>(march_.end()));
-    fold_ = select(given, nothing, fold_);
+    const LaneCompositor<N> nothing(rays_.tolerance, rays_.largest_extinction, rays_.largest_color,
+                                    convert<float>(march_.end()));
+    compositor_ = select(given, nothing, compositor_);
     trace_.begin(given);
     sampled_ = select(given, SampledErrors<F>(), sampled_);
     given_up_ = given_up_ & !given;
@@ -80,8 +80,8 @@ class GaussianPacket {
 
   /// Stores the results of the rays of these lanes.
   void store(M lanes) noexcept {
-    const SegmentResult<D> all = fold_.result();
-    const D error = fold_.error(convert<double>(segments_)) +
+    const SegmentResult<D> all = compositor_.result();
+    const D error = compositor_.error(convert<double>(segments_)) +
                     D(rays_.largest_color) * min(D(job_.left_out) * march_.end(), D(1));
     const F neighbor_deviation = largest_color_ * march_.neighbor_deviation(),
             longest_step = march_.longest_step_between();
@@ -125,20 +125,20 @@ class GaussianPacket {
     const M empty = on & look_.empty;
     F change(2);  // of the step's length, as its error would have it
     if (any(empty)) {
-      march_.note(empty, look_, fold_.transparency());
+      march_.note(empty, look_, compositor_.transparency());
       march_.take(empty, look_, change);
     }
     M rest = on & !empty;
     if (any(rest & look_.resolved)) rest = rest & !integrate(rest & look_.resolved, left, change);
     if (any(rest)) give_up(march_.retry(rest, look_, change));
-    give_up(on & (looks_ >= I(most_looks)));
+    give_up(on & (looks_ >= I(max_looks)));
   }
 
   /// Adds the steps to their rays where the budget can pay for their error: those that are
   /// returned. `change`: of the step's length, what would have suited it.
   M integrate(M lanes, F left, F& change) noexcept {
     const SegmentResult<F>& s = look_.found.segment;
-    const F transparency = fold_.transparency();
+    const F transparency = compositor_.transparency();
     const F deviation = F(share_of_difference) * look_.found.difference;
     const F variance =
         transparency * transparency *
@@ -147,8 +147,8 @@ class GaussianPacket {
         transparency * largest_color_ *
         (F(32 * rounding_unit<float>) * s.opacity + look_.ends.rounding * look_.length);
     const F largest =
-        sampled_.largest_variance(fold_.budget, rounding, s.opacity, look_.length, left);
-    const M take = lanes & (variance <= largest) & (rounding <= fold_.budget.remaining());
+        sampled_.largest_variance(compositor_.budget, rounding, s.opacity, look_.length, left);
+    const M take = lanes & (variance <= largest) & (rounding <= compositor_.budget.remaining());
     // The variance of short steps grows with the step's fifth to tenth power, what it may be with
     // the first.
     const F ease = F(0.4f) * largest / max(variance, F(1e-30f));
@@ -157,14 +157,14 @@ class GaussianPacket {
     // Else rounding alone is too much, or neither is anything.
     change = select(lanes, select(known, suits, select(take, F(1), F(0.5f))), change);
     if (none(take)) return take;
-    fold_.add(take, s);
-    sampled_.charge(take, fold_.budget, variance, rounding, s.opacity, look_.length, left,
+    compositor_.add(take, s);
+    sampled_.charge(take, compositor_.budget, variance, rounding, s.opacity, look_.length, left,
                     transparency);
     segments_ += select(take, I(1), I(0));
     march_.note(take, look_, transparency);
     march_.take(take, look_, change);
-    trace_.note(take, fold_);
-    march_.alive = march_.alive & !fold_.cut_off(take);
+    trace_.note(take, compositor_);
+    march_.alive = march_.alive & !compositor_.cut_off(take);
     return take;
   }
 
@@ -181,7 +181,7 @@ class GaussianPacket {
   March march_;
   typename March::Look look_;
   SampledErrors<F> sampled_;
-  PacketFold<N> fold_;
+  LaneCompositor<N> compositor_;
   OpacityTrace<N> trace_;
   F largest_color_;
   M given_up_{false};

@@ -2,12 +2,12 @@
 #pragma once
 
 #include "pellucid/field/multichannel_grid.h"
-#include "pellucid/packet/steps/sample_places.h"
+#include "pellucid/packet/steps/step_positions.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// Several fields at places of rays in lanes, found once for all of them (sample_places.h).
+/// Several fields at places of rays in lanes, found once for all of them (step_positions.h).
 template <int N>
 class MultichannelSamples {
  public:
@@ -61,7 +61,7 @@ class MultichannelSamples {
   }
 
   const MultichannelGrid& fields_;
-  SamplePlaces<N> places_;
+  StepPositions<N> places_;
   std::ptrdiff_t base_[N];  ///< the value at the lower corner of the anchor's cell
 };
 

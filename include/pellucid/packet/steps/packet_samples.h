@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/steps/sample_places.h"
+#include "pellucid/packet/steps/step_positions.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// The data at places of rays in lanes, found as those (sample_places.h).
+/// The data at places of rays in lanes, found as those (step_positions.h).
 template <int N>
 class PacketSamples {
  public:
@@ -73,7 +73,7 @@ class PacketSamples {
   }
 
   const PacketGrid& grid_;
-  SamplePlaces<N> places_;
+  StepPositions<N> places_;
   const void* base_[N];  ///< the anchor's cell
 };
 

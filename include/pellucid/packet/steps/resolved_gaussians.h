@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/steps/sample_places.h"
+#include "pellucid/packet/steps/step_positions.h"
 #include "pellucid/segment/sampled.h"
 #include "pellucid/simd/batch.h"
 #include "pellucid/transfer/gaussian.h"
@@ -32,7 +32,7 @@ struct LocalVariation {
   /// Variation of the derivative along the ray in a step, per world length.
   Batch<float, N> oscillation[max_channels];
   /// The largest jump of the derivative by each axis's grid coordinate.
-  Batch<float, N> bend[max_channels][3];
+  Batch<float, N> second_difference[max_channels][3];
 };
 
 /// Which primitives may matter to the ray of each lane.
@@ -78,8 +78,8 @@ class LanePrimitives {
 /// to the next.
 ///
 /// Between two ends data leave their chord by at most a quarter of the step times the oscillation
-/// of their derivative (traverse/block_bends.h), so that each row of a primitive's p = K (v - c)
-/// leaves its own by at most step/4 Σ |K| · oscillation, entry by entry, and p by their root of
+/// of their derivative (traverse/curvature_bounds.h), so that each row of a primitive's p = K (v -
+/// c) leaves its own by at most step/4 Σ |K| · oscillation, entry by entry, and p by their root of
 /// squares e. On the chord from p to q no place is nearer to 0 than (|p| + |q| - |q - p|) / 2. So a
 /// primitive that matters nowhere on the step is known not to, and p moves by at most |q - p| + 2 e
 /// on any other.
@@ -200,8 +200,9 @@ class ResolvedGaussians {
     const F squared = moves_most * moves_most;
     coarse = multiply_add(largest, squared * squared, coarse);
     for (int a = 0; a < 3; ++a) {
-      const F bend = moved_at_most(of, [&](int c) noexcept { return variation.bend[c][a]; });
-      bending[a] = multiply_add(largest, bend, bending[a]);
+      const F second_difference =
+          moved_at_most(of, [&](int c) noexcept { return variation.second_difference[c][a]; });
+      bending[a] = multiply_add(largest, second_difference, bending[a]);
     }
   }
 

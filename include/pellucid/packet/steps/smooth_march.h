@@ -13,12 +13,12 @@ namespace pellucid {
 /// The lengths of steps for directions of rays in lanes, and the mean squares of what they err
 /// because of bends along each axis: for packets one after the other, which mostly share theirs.
 template <int N>
-struct StepLengths {
-  static constexpr int most_levels = most_sampled_step_levels;
+struct StepTable {
+  static constexpr int max_levels = max_sampled_step_levels;
 
   double direction[3][N];
   int levels = 0;  ///< those that are known
-  Batch<float, N> step[most_levels], weight[most_levels][3];
+  Batch<float, N> step[max_levels], weight[max_levels][3];
 
   /// Keeps what is known for these directions, if they are the same.
   void begin(const double (&directions)[3][N]) noexcept {
@@ -56,7 +56,7 @@ class SmoothMarch {
 
   /// `lengths` is of this march alone while it lasts.
   SmoothMarch(const PellucidPacketJob& job, const PacketGrid& grid, const double (&origin)[3][N],
-              const double (&direction)[3][N], StepLengths<N>& lengths) noexcept
+              const double (&direction)[3][N], StepTable<N>& lengths) noexcept
       : transfer_(*seen(job.samples)),
         smooth_(*seen(job.smooth)),
         grid_(grid),
@@ -187,7 +187,7 @@ class SmoothMarch {
     return sqrt(variance);
   }
   /// RayResult::longest_step, likewise.
-  F longest_step() const noexcept { return F(1) / shortest_wave_; }
+  F longest_step() const noexcept { return F(1) / max_frequency_; }
 
   /// Shortens the steps of these lanes; of those whose are the shortest returns which they are.
   M finer(M lanes) noexcept {
@@ -213,7 +213,7 @@ class SmoothMarch {
     const F weight = select(lanes, transparency * transparency * length, F(0));
     seen_ += weight;
     for (int a = 0; a < 3; ++a) bends_[a] += select(lanes, weight * (local[a] * local[a]), F(0));
-    shortest_wave_ = max(shortest_wave_, select(lanes, local[3], F(0)));
+    max_frequency_ = max(max_frequency_, select(lanes, local[3], F(0)));
   }
 
   /// The fields of SmoothBlocks for the block at this length from the entry into the grid.
@@ -270,7 +270,8 @@ class SmoothMarch {
       F weight[3], cost(0);
       weigh(candidate, weight);
       for (int a = 0; a < 3; ++a) {
-        cost += weight[a] * F(smooth_.bend[a] * smooth_.bend[a] / largest_square_of_bend());
+        cost += weight[a] * F(smooth_.second_difference[a] * smooth_.second_difference[a] /
+                              largest_square_of_bend());
       }
       cost = (cost + F(1e-4f)) * F(share[c]);
       const M better = cost < least;
@@ -285,7 +286,8 @@ class SmoothMarch {
     lengths_.levels = level + 1;
   }
   float largest_square_of_bend() const noexcept {
-    const float largest = max(smooth_.bend[0], max(smooth_.bend[1], smooth_.bend[2]));
+    const float largest = max(smooth_.second_difference[0],
+                              max(smooth_.second_difference[1], smooth_.second_difference[2]));
     return largest > 0 ? largest * largest : 1;
   }
 
@@ -302,8 +304,8 @@ class SmoothMarch {
     s.may_be_longer = part <= F(0.7071f);
   }
 
-  /// The mean square of what corners of the transfer function make steps err, over where in a step
-  /// they are: each the more, the faster the data pass it. A corner that the data come near to
+  /// The mean square of what breakpoints of the transfer function make steps err, over where in a
+  /// step they are: each the more, the faster the data pass it. A corner that the data come near to
   /// between two steps counts as well.
   F of_corners(const F* value, F step, M lanes) const noexcept {
     F least = front_value_, most = front_value_, fastest(0), before = front_value_;
@@ -326,14 +328,14 @@ class SmoothMarch {
   PacketSamples<N> samples_;
   D origin_[3], direction_[3];
   F direction_in_float_[3], cells_per_length_;
-  StepLengths<N>& lengths_;
+  StepTable<N>& lengths_;
   I level_;
   M known_{false};            ///< whether `front_` is that at `at`
   Material<F> front_, back_;  ///< of the steps that were looked at
   F front_value_{0}, back_value_{0};
   // Of what was taken or refused: squares of roughness times bend along each axis, over length; and
   // the largest of 1 / the longest step.
-  F bends_[3] = {F(0), F(0), F(0)}, shortest_wave_{0};
+  F bends_[3] = {F(0), F(0), F(0)}, max_frequency_{0};
   F seen_{0};  ///< their length, by the square of what they show of it
 };
 

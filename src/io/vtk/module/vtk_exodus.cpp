@@ -65,9 +65,9 @@ class ExodusFile {
       block.type = EX_ELEM_BLOCK;
       if (ex_get_block_param(file_, &block) < 0 || block.num_entry <= 0) continue;
       const std::string kind = in_small_letters(std::string_view(block.topology).substr(0, 6));
-      constexpr std::int64_t most_corners = 1000;  // as of no element; polyhedra have lists
+      constexpr std::int64_t max_corners = 1000;  // as of no element; polyhedra have lists
       if (kind == "nsided" || kind == "nfaced" || block.num_nodes_per_entry <= 0 ||
-          block.num_nodes_per_entry > most_corners) {
+          block.num_nodes_per_entry > max_corners) {
         continue;
       }
       constexpr std::int64_t at_once = 1 << 16;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bundle.h"
+#include "layer_mixture.h"
 
 #include <algorithm>
 #include <bit>
@@ -7,7 +7,7 @@
 
 namespace pellucid {
 
-Bundle::Bundle(const std::vector<const LayerSource*>& sources, std::vector<int> key)
+LayerMixture::LayerMixture(const std::vector<const LayerSource*>& sources, std::vector<int> key)
     : key_(std::move(key)), first_channel_(key_.size()), primitives_(key_.size()) {
   int channels = 0;
   for (std::size_t layer = 0; layer < key_.size(); ++layer) {
@@ -33,7 +33,7 @@ Bundle::Bundle(const std::vector<const LayerSource*>& sources, std::vector<int> 
   transfer_.channels = channels;
 }
 
-PrimitiveSet Bundle::primitives(std::size_t layer, PrimitiveSet of_layer) const noexcept {
+PrimitiveSet LayerMixture::primitives(std::size_t layer, PrimitiveSet of_layer) const noexcept {
   const auto [first, count] = primitives_[layer];
   unsigned long long bits = of_layer.bits;
   if (count < 64) bits &= (1ULL << count) - 1;
@@ -41,15 +41,16 @@ PrimitiveSet Bundle::primitives(std::size_t layer, PrimitiveSet of_layer) const 
   return {std::rotl(bits, first & 63)};
 }
 
-const Bundle& Bundles::find(const std::vector<int>& key) {
+const LayerMixture& LayerMixtureCache::find(const std::vector<int>& key) {
   const auto found = std::ranges::find_if(
-      bundles_, [&](const std::unique_ptr<const Bundle>& bundle) { return bundle->key() == key; });
+      bundles_,
+      [&](const std::unique_ptr<const LayerMixture>& bundle) { return bundle->key() == key; });
   if (found != bundles_.end()) {
     // Rays see the same few again and again.
     std::iter_swap(bundles_.begin(), found);
     return *bundles_.front();
   }
-  bundles_.push_back(std::make_unique<const Bundle>(sources_, key));
+  bundles_.push_back(std::make_unique<const LayerMixture>(sources_, key));
   return *bundles_.back();
 }
 

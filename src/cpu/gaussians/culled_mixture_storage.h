@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pellucid/packet/bundle/near_mixture.h"
+#include "pellucid/packet/bundle/culled_mixture.h"
 
 namespace pellucid {
 
@@ -22,13 +22,13 @@ class NearMixtureStorage {
   bool suits_packets() const noexcept { return suits_packets_; }
 
   /// Returns a view of this object, valid while it is not moved.
-  const NearMixture& view() noexcept {
+  const CulledMixture& view() noexcept {
     mixture_.primitive = near_.data();
     return mixture_;
   }
 
  private:
-  NearMixture mixture_;
+  CulledMixture mixture_;
   std::vector<NearGaussian> near_;
   bool suits_packets_ = true;
 };

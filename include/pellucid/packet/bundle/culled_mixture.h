@@ -48,7 +48,7 @@ T least_exponent_by_rows(const NearGaussian& near, const T* lower, const T* uppe
 
 /// A transfer function of several variables, as rays in lanes look at it before they integrate
 /// anything. A view; owns nothing.
-struct NearMixture {
+struct CulledMixture {
   MultivariateTransfer<double> transfer;
   const NearGaussian* primitive = nullptr;  ///< for each Gaussian of it
   /// The extinction that all may have together where none is near, for rays of the length

@@ -11,12 +11,12 @@
 namespace pellucid {
 
 /// A device with what frames leave in its memory: data, tables, the image.
-class KeptDevice {
+class CachedDevice {
  public:
-  explicit KeptDevice(std::unique_ptr<DeviceBackend> backend);
-  ~KeptDevice();
-  KeptDevice(const KeptDevice&) = delete;
-  KeptDevice& operator=(const KeptDevice&) = delete;
+  explicit CachedDevice(std::unique_ptr<DeviceBackend> backend);
+  ~CachedDevice();
+  CachedDevice(const CachedDevice&) = delete;
+  CachedDevice& operator=(const CachedDevice&) = delete;
 
   DeviceBackend& backend() noexcept { return *backend_; }
   ResidentArrays& arrays() noexcept { return arrays_; }
@@ -41,16 +41,16 @@ class KeptDevice {
 };
 
 /// The devices that a renderer has used. Safe to use from any thread.
-class KeptDevices {
+class DeviceCache {
  public:
   /// Returns the device. The first call makes it. Throws Error if it cannot be had.
-  std::shared_ptr<KeptDevice> find(Device device);
+  std::shared_ptr<CachedDevice> find(Device device);
   /// Lets go of all that is kept; frames that run keep their device.
   void clear();
 
  private:
   std::mutex mutex_;
-  std::shared_ptr<KeptDevice> cuda_, emulated_;
+  std::shared_ptr<CachedDevice> cuda_, emulated_;
 };
 
 }  // namespace pellucid

@@ -8,13 +8,13 @@ namespace pellucid {
 
 /// Largest distance of rays through smooth blocks that miss nothing between them, in the longest
 /// steps of these blocks.
-class RaysApart {
+class RaySpacing {
  public:
   /// At most.
   static constexpr double most = 0.9;
 
   /// Prepares for rays through the box of these blocks.
-  explicit RaysApart(const BlockRecords& records) noexcept;
+  explicit RaySpacing(const BlockRecords& records) noexcept;
 
   /// Beside this ray (grid coordinates).
   float operator()(const PellucidRay& ray) const noexcept;

@@ -5,11 +5,11 @@
 
 namespace pellucid {
 
-/// Stretches of the rays of a packet, each inside of one block that is not to be skipped, in
+/// BlockIntervals of the rays of a packet, each inside of one block that is not to be skipped, in
 /// arrays: what lies ahead of the rays, to be gone through by as many lanes as there are, whichever
 /// ray's they are. Those of a ray come in order.
 template <int N>
-struct Stretches {
+struct BlockIntervals {
   /// Number of stretches that are found ahead of a ray at a time.
   static constexpr int of_a_ray = 12;
   static constexpr int most = N * of_a_ray;
@@ -27,10 +27,10 @@ struct Stretches {
   std::int32_t spans[capacity];  ///< that absorb
 };
 
-/// Stretches that are to be gone through cell by cell, packed, in order.
+/// BlockIntervals that are to be gone through cell by cell, packed, in order.
 template <int N>
-struct Walks {
-  static constexpr int capacity = Stretches<N>::capacity;
+struct BlockSegments {
+  static constexpr int capacity = BlockIntervals<N>::capacity;
 
   int count;
   std::int32_t stretch[capacity], ray[capacity];
@@ -40,8 +40,9 @@ struct Walks {
   double length[capacity];                         ///< world length
   float left[capacity];                            ///< of the ray at the entry, world length
   /// By how much the data's derivative by world length varies along the ray: at most by
-  /// jump + 2 bend · (length of a part), and by `variation` in all. Infinite where it is not known.
-  float jump[capacity], bend[capacity], variation[capacity];
+  /// jump + 2 second_difference · (length of a part), and by `variation` in all. Infinite where it
+  /// is not known.
+  float jump[capacity], second_difference[capacity], variation[capacity];
   const void* base[capacity];  ///< the value at the lower corner of cell `least`
 };
 

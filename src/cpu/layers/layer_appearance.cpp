@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "layer_look.h"
+#include "layer_appearance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,7 +43,7 @@ TransferFunction shifted(const TransferFunction& function, double shift) {
 
 }  // namespace
 
-LayerLook::LayerLook(const Layer& layer)
+LayerAppearance::LayerAppearance(const Layer& layer)
     : layer_(layer), has_medium_(largest_extinction(layer) > 0) {
   if (layer.shading) {
     const Shading& shading = *layer.shading;
@@ -68,7 +68,8 @@ LayerLook::LayerLook(const Layer& layer)
   }
 }
 
-std::optional<TransferFunction> isosurface_support(const LayerLook& look, int channel, double off) {
+std::optional<TransferFunction> isosurface_support(const LayerAppearance& look, int channel,
+                                                   double off) {
   std::vector<double> values;
   for (const Isosurface& surface : look.isosurfaces()) {
     if (surface.channel == channel) values.push_back(surface.value);

@@ -9,14 +9,14 @@ namespace pellucid {
 
 /// Positions at which rays cross a face, for numbers that are linear on it.
 template <class S, int N>
-struct FacePlace {
+struct FaceHit {
   using T = Batch<S, N>;
   using F = Batch<float, N>;
 
   T second, third;  ///< what these points contribute
   F off;            ///< by how much of the points' differences a result may be off
 
-  FacePlace(const SeenFace<T>& face, F blur) noexcept {
+  FaceHit(const SeenFace<T>& face, F blur) noexcept {
     const T sum = face.area[0] + face.area[1] + face.area[2];
     const auto flat = !(sum > T(0));
     const T inverse = T(1) / select(flat, T(1), sum);

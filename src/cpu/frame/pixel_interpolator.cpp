@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "between_pixels.h"
+#include "pixel_interpolator.h"
 
 #include <algorithm>
 #include <array>
@@ -16,16 +16,16 @@ namespace {
 
 constexpr int largest_stride = 16;
 /// From one side of the image to the other, of pixels of the first level.
-constexpr int least_cells = 8;
+constexpr int min_cells = 8;
 /// At smaller tolerances few pixels pass, and those that they are taken from cost more.
-constexpr double least_tolerance = 4e-4;
+constexpr double min_tolerance = 4e-4;
 /// Pixels of a level that are tried: every third each way. If less than a quarter of them is found,
 /// tracing the others to smaller tolerances costs more than it saves.
 constexpr int apart_of_tried = 3;
 constexpr double least_found = 0.25;
 /// Least share of the screen that is clear: with less, tracing to smaller tolerances costs more
 /// than it saves.
-constexpr double least_clear_share = 1.0 / 16;
+constexpr double min_clear_share = 1.0 / 16;
 
 /// The cubic through four pixels, in the middle between the second and the third.
 constexpr std::array<float, 4> weight{-1.0f / 16, 9.0f / 16, 9.0f / 16, -1.0f / 16};
@@ -60,7 +60,7 @@ bool are_near(int pixels, double voxels_between_pixels, double waves) noexcept {
 /// most of what is known of them.
 struct Around {
   std::array<float, 4> cubic{};
-  float error = 0;  ///< inherited: see BetweenPixels
+  float error = 0;  ///< inherited: see PixelInterpolator
   float neighbor_deviation = 0, waves = 0;
 };
 
@@ -129,29 +129,30 @@ double voxels_between_pixels(const CameraFrame<double>& camera, const Volume& vo
 
 }  // namespace
 
-std::unique_ptr<BetweenPixels> BetweenPixels::make(const Frame& frame, const ImageView& image) {
-  const auto around = frame.tracer->surroundings();
-  if (!around || frame.scene.backdrop || frame.tolerance < least_tolerance) return nullptr;
+std::unique_ptr<PixelInterpolator> PixelInterpolator::make(const Frame& frame,
+                                                           const ImageView& image) {
+  const auto around = frame.tracer->interpolation_info();
+  if (!around || frame.scene.backdrop || frame.tolerance < min_tolerance) return nullptr;
   if (frame.region && !frame.region->corners) return nullptr;
   const BlockRecords& records = around->blocks.records;
   const double voxels = voxels_between_pixels(
       frame.camera, around->volume, records, farthest_depth(frame.camera, around->volume, records));
   const int smaller_side = std::min(frame.scene.size.width, frame.scene.size.height);
   int stride = 1;
-  while (2 * stride <= largest_stride && least_cells * 2 * stride <= smaller_side &&
+  while (2 * stride <= largest_stride && min_cells * 2 * stride <= smaller_side &&
          are_near(2 * stride, voxels, 1 / around->longest_step)) {
     stride *= 2;
   }
   if (stride < 2) return nullptr;
   ScreenMask mask(frame.camera, around->volume, around->blocks, stride,
                   frame.region ? &*frame.region->corners : nullptr);
-  if (mask.clear_share() < least_clear_share) return nullptr;
-  return std::unique_ptr<BetweenPixels>(
-      new BetweenPixels(frame, image, stride, voxels, std::move(mask)));
+  if (mask.clear_share() < min_clear_share) return nullptr;
+  return std::unique_ptr<PixelInterpolator>(
+      new PixelInterpolator(frame, image, stride, voxels, std::move(mask)));
 }
 
-BetweenPixels::BetweenPixels(const Frame& frame, const ImageView& image, int stride, double voxels,
-                             ScreenMask mask)
+PixelInterpolator::PixelInterpolator(const Frame& frame, const ImageView& image, int stride,
+                                     double voxels, ScreenMask mask)
     : frame_(frame),
       image_(image),
       stride_(stride),
@@ -161,12 +162,12 @@ BetweenPixels::BetweenPixels(const Frame& frame, const ImageView& image, int str
       columns_(static_cast<std::size_t>((frame.scene.size.width + 1) / 2)),
       known_(columns_ * static_cast<std::size_t>((frame.scene.size.height + 1) / 2)) {}
 
-double BetweenPixels::share_of_rays(int stride) const noexcept {
+double PixelInterpolator::traced_tolerance_fraction(int stride) const noexcept {
   const double share = shares_of(stride).of_rays;
   return stride > 1 ? std::min(share, most_of_rays / frame_.tolerance) : share;
 }
 
-void BetweenPixels::keep(int column, int row, const RayResult& result) noexcept {
+void PixelInterpolator::keep(int column, int row, const RayResult& result) noexcept {
   const bool known = result.neighbor_deviation >= 0;  // and no NaN
   known_[index(column, row)] = {
       float_above(result.error),
@@ -174,11 +175,11 @@ void BetweenPixels::keep(int column, int row, const RayResult& result) noexcept 
       1 / result.longest_step};
 }
 
-void BetweenPixels::finish_level(int stride, int threads) {
+void PixelInterpolator::finish_level(int stride, int threads) {
   finished_ = stride;
   cubic_errors_.emplace(image_, frame_.scene.size, stride, threads);
   if (stride < stride_) {
-    const auto around = frame_.tracer->surroundings();
+    const auto around = frame_.tracer->interpolation_info();
     mask_ = ScreenMask(frame_.camera, around->volume, around->blocks, stride,
                        frame_.region ? &*frame_.region->corners : nullptr);
   }
@@ -192,16 +193,16 @@ void BetweenPixels::finish_level(int stride, int threads) {
       ++tried;
       // What this level does not hold is traced, and then the next one may: there the cubic errs a
       // sixteenth, beside what is inherited from rays.
-      const double then =
-          next > 1 ? share_of_rays(next) * frame_.tolerance + cost.cubic / 16 + cost.uneven
-                   : cost.inherited + cost.cubic + cost.uneven;
+      const double then = next > 1 ? traced_tolerance_fraction(next) * frame_.tolerance +
+                                         cost.cubic / 16 + cost.uneven
+                                   : cost.inherited + cost.cubic + cost.uneven;
       if (then <= shares_of(std::max(next / 2, 1)).in_between * frame_.tolerance) ++found;
     }
   }
   goes_on_ = found > 0 && found >= least_found * tried;
 }
 
-bool BetweenPixels::find(int column, int row, int stride, RayResult& result) const noexcept {
+bool PixelInterpolator::find(int column, int row, int stride, RayResult& result) const noexcept {
   if (!goes_on_) return false;
   const double most = shares_of(stride).in_between * frame_.tolerance;
   const Cost cost = look(column, row, stride, most, result);
@@ -209,8 +210,8 @@ bool BetweenPixels::find(int column, int row, int stride, RayResult& result) con
   return cost.known && result.error <= most;
 }
 
-BetweenPixels::Cost BetweenPixels::look(int column, int row, int stride, double most,
-                                        RayResult& result) const noexcept {
+PixelInterpolator::Cost PixelInterpolator::look(int column, int row, int stride, double most,
+                                                RayResult& result) const noexcept {
   // Of the lattice of the level before; all are powers of two.
   const int before = 2 * stride;
   const bool across = (column & stride) != 0, down = (row & stride) != 0;

@@ -11,13 +11,13 @@ namespace pellucid {
 /// Places of rays in lanes, as cells and places in them. They are found in double every few
 /// samples, the anchor, and in float from there: within 32 cells of it, to 6e-6 of a cell.
 template <int N>
-class SamplePlaces {
+class StepPositions {
  public:
   using F = Batch<float, N>;
   using D = Batch<double, N>;
   using I = Batch<std::int32_t, N>;
 
-  explicit SamplePlaces(const PacketGrid& grid) noexcept : row(grid.row), slice(grid.slice) {
+  explicit StepPositions(const PacketGrid& grid) noexcept : row(grid.row), slice(grid.slice) {
     for (int a = 0; a < 3; ++a) {
       padding_[a] = grid.padding[a];
       last_[a] = grid.values[a] - 1;

@@ -8,7 +8,7 @@ namespace pellucid {
 
 /// Positions of rays in cells, one in each lane.
 template <int N>
-struct CellPlaces {
+struct CellPositions {
   Batch<std::int32_t, N> cell[3];      ///< in plane coordinates
   Vec3<Batch<double, N>> entry, exit;  ///< places in the cell, [0,1]³
   Batch<double, N> begin;              ///< world length from the ray's entry into the grid
@@ -18,13 +18,13 @@ struct CellPlaces {
 /// Returns the positions at which CellMarch has the lanes' own rays cross a cell of a stretch.
 /// `in_block`: the cell, in its block.
 template <int N>
-CellPlaces<N> cell_places(const PacketGrid& grid, const BlockMarch<N>& rays,
-                          const Stretches<N>& stretches, Batch<std::int32_t, N> stretch,
-                          const Batch<std::int32_t, N>* in_block) noexcept {
+CellPositions<N> cell_places(const PacketGrid& grid, const BlockMarch<N>& rays,
+                             const BlockIntervals<N>& stretches, Batch<std::int32_t, N> stretch,
+                             const Batch<std::int32_t, N>* in_block) noexcept {
   using F = Batch<float, N>;
   using D = Batch<double, N>;
   using I = Batch<std::int32_t, N>;
-  CellPlaces<N> places;
+  CellPositions<N> places;
   const D from = gather(stretches.begin, stretch);
   D begin(0), end = gather(stretches.end, stretch) - from;
   Vec3<D> place, direction;

@@ -24,9 +24,9 @@ struct Caller {
 ///   pass (DNS rebinding).
 /// - Origin, where it is given, must be our own. A WebSocket must have one, because browsers let
 ///   any page open one (cross-site WebSocket hijacking).
-class Gate {
+class AccessControl {
  public:
-  Gate(std::string token, std::uint16_t port);
+  AccessControl(std::string token, std::uint16_t port);
 
   /// Returns the path behind the token, such as "/style.css", or none if the request is refused.
   std::optional<std::string_view> admit(const Caller& caller) const noexcept;

@@ -11,15 +11,15 @@ namespace pellucid {
 
 /// The layers that are present on a stretch of a ray, as one transfer function: a mixture, whose
 /// terms are those of all of them.
-class Bundle {
+class LayerMixture {
  public:
   using Span = MultivariateSpan<double, CubicBernstein<double>, max_bundle_channels>;
 
   /// `key`: for each layer the function of its source, or -1 where it is absent.
-  Bundle(const std::vector<const LayerSource*>& sources, std::vector<int> key);
+  LayerMixture(const std::vector<const LayerSource*>& sources, std::vector<int> key);
   // The function points into the object.
-  Bundle(const Bundle&) = delete;
-  Bundle& operator=(const Bundle&) = delete;
+  LayerMixture(const LayerMixture&) = delete;
+  LayerMixture& operator=(const LayerMixture&) = delete;
 
   const std::vector<int>& key() const noexcept { return key_; }
   const MultivariateTransfer<double>& transfer() const noexcept { return transfer_; }
@@ -45,16 +45,16 @@ class Bundle {
 };
 
 /// The bundles that rays have met so far. Used by one thread.
-class Bundles {
+class LayerMixtureCache {
  public:
-  explicit Bundles(const std::vector<const LayerSource*>& sources) : sources_(sources) {}
+  explicit LayerMixtureCache(const std::vector<const LayerSource*>& sources) : sources_(sources) {}
 
   /// Returns the bundle of a key, valid while this object lives.
-  const Bundle& find(const std::vector<int>& key);
+  const LayerMixture& find(const std::vector<int>& key);
 
  private:
   const std::vector<const LayerSource*>& sources_;
-  std::vector<std::unique_ptr<const Bundle>> bundles_;
+  std::vector<std::unique_ptr<const LayerMixture>> bundles_;
 };
 
 }  // namespace pellucid

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kept_devices.h"
+#include "device_cache.h"
 
 #include <utility>
 
 namespace pellucid {
 
-KeptDevice::KeptDevice(std::unique_ptr<DeviceBackend> backend)
+CachedDevice::CachedDevice(std::unique_ptr<DeviceBackend> backend)
     : backend_(std::move(backend)), arrays_(*backend_) {}
 
-KeptDevice::~KeptDevice() {
+CachedDevice::~CachedDevice() {
   for (Buffer* buffer : {&color_, &depth_, &error_, &proved_, &in_double_, &left_, &counts_}) {
     if (buffer->memory != nullptr) backend_->release(buffer->memory);
   }
 }
 
 template <class T>
-T* KeptDevice::fit(Buffer& buffer, std::size_t count) {
+T* CachedDevice::fit(Buffer& buffer, std::size_t count) {
   const std::size_t bytes = sizeof(T) * count;
   if (buffer.bytes < bytes) {
     if (buffer.memory != nullptr) backend_->release(buffer.memory);
@@ -26,7 +26,7 @@ T* KeptDevice::fit(Buffer& buffer, std::size_t count) {
   return static_cast<T*>(buffer.memory);
 }
 
-DeviceTask KeptDevice::prepare(ImageSize size, bool depth, bool error) {
+DeviceTask CachedDevice::prepare(ImageSize size, bool depth, bool error) {
   const std::size_t pixels =
       static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
   DeviceTask task;
@@ -49,17 +49,17 @@ DeviceTask KeptDevice::prepare(ImageSize size, bool depth, bool error) {
   return task;
 }
 
-std::shared_ptr<KeptDevice> KeptDevices::find(Device device) {
+std::shared_ptr<CachedDevice> DeviceCache::find(Device device) {
   const std::lock_guard lock(mutex_);
-  std::shared_ptr<KeptDevice>& kept = device == Device::cuda ? cuda_ : emulated_;
+  std::shared_ptr<CachedDevice>& kept = device == Device::cuda ? cuda_ : emulated_;
   if (!kept) {
-    kept = std::make_shared<KeptDevice>(device == Device::cuda ? make_cuda_backend()
-                                                               : make_emulated_backend());
+    kept = std::make_shared<CachedDevice>(device == Device::cuda ? make_cuda_backend()
+                                                                 : make_emulated_backend());
   }
   return kept;
 }
 
-void KeptDevices::clear() {
+void DeviceCache::clear() {
   const std::lock_guard lock(mutex_);
   cuda_.reset();
   emulated_.reset();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "second_look.h"
+#include "error_repair.h"
 
 #include <algorithm>
 #include <array>

@@ -8,14 +8,15 @@ namespace pellucid {
 
 /// Makes walks of stretches: where they begin in their blocks, and what is known of the data there.
 template <int N>
-class WalkList {
+class BlockSegmentList {
  public:
   using F = Batch<float, N>;
   using D = Batch<double, N>;
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
-  WalkList(const PacketGrid& grid, const BlockMarch<N>& rays) noexcept : grid_(grid), rays_(rays) {
+  BlockSegmentList(const PacketGrid& grid, const BlockMarch<N>& rays) noexcept
+      : grid_(grid), rays_(rays) {
     for (int a = 0; a < 3; ++a) {
       for (int l = 0; l < N; ++l) {
         direction_of_[a][l] = abs(static_cast<float>(rays.direction[a][l]));
@@ -26,7 +27,8 @@ class WalkList {
   /// Fills `walks` for data of this type. constant(lanes, stretch, value, length, left) takes
   /// stretches of one material and says which it took.
   template <class Value, class Constant>
-  void fill(Stretches<N>& stretches, Walks<N>& walks, Constant&& constant) const noexcept {
+  void fill(BlockIntervals<N>& stretches, BlockSegments<N>& walks,
+            Constant&& constant) const noexcept {
     for (int k = stretches.count; k < stretches.count + N; ++k) {
       stretches.ray[k] = stretches.constant[k] = 0;
       stretches.begin[k] = stretches.end[k] = 0;
@@ -40,7 +42,7 @@ class WalkList {
 
  private:
   template <class Value, class Constant>
-  void append(const Stretches<N>& stretches, int first, Walks<N>& walks,
+  void append(const BlockIntervals<N>& stretches, int first, BlockSegments<N>& walks,
               Constant&& constant) const noexcept {
     std::int32_t number[N], first_value[3][N];
     for (int l = 0; l < N; ++l) number[l] = first + l;
@@ -92,7 +94,7 @@ class WalkList {
   }
 
   /// Appends derivative_variation() and derivative_oscillation(), rounded upward.
-  void append_variation(M lanes, I ray, I block, Walks<N>& walks) const noexcept {
+  void append_variation(M lanes, I ray, I block, BlockSegments<N>& walks) const noexcept {
     I word[6];
     const I record = block * I(sizeof(BlockRecord) / sizeof(std::int32_t));
     for (int k = 1; k < 6; ++k) word[k] = gather(grid_.records + k, record);
@@ -102,13 +104,13 @@ class WalkList {
             z = lookup(direction_of_[2], ray);
     const F jump_x = x * lower(1), jump_y = y * upper(1), jump_z = z * lower(2);
     const F half(0.5f), round_up(1 + 32 * rounding_unit<float>);
-    const F bend = half * (x * jump_x + y * jump_y + z * jump_z) +
-                   (y * z * upper(2) + z * x * lower(3) + x * y * upper(3));
+    const F second_difference = half * (x * jump_x + y * jump_y + z * jump_z) +
+                                (y * z * upper(2) + z * x * lower(3) + x * y * upper(3));
     const F variation = x * lower(4) + y * upper(4) + z * lower(5);
     const M vacuum = ((word[5] >> 16) & I(BlockRecord::vacuum_bits)) > I(0);
     const F infinity(std::numeric_limits<float>::infinity());
     store_packed(lanes, round_up * (jump_x + jump_y + jump_z), walks.jump + walks.count);
-    store_packed(lanes, round_up * bend, walks.bend + walks.count);
+    store_packed(lanes, round_up * second_difference, walks.second_difference + walks.count);
     store_packed(lanes, select(vacuum, infinity, round_up * variation),
                  walks.variation + walks.count);
   }

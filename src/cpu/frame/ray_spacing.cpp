@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rays_apart.h"
+#include "ray_spacing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,20 +16,20 @@ constexpr double most_along_face = 3 / 2.25;
 
 }  // namespace
 
-RaysApart::RaysApart(const BlockRecords& records) noexcept {
+RaySpacing::RaySpacing(const BlockRecords& records) noexcept {
   for (int a = 0; a < 3; ++a) {
     least_[a] = records.axis[a].plane(0);
     most_[a] = records.axis[a].plane(records.axis[a].cells());
   }
 }
 
-float RaysApart::operator()(const PellucidRay& ray) const noexcept {
+float RaySpacing::operator()(const PellucidRay& ray) const noexcept {
   return static_cast<float>(std::min(most, most_along_face * facing(ray)));
 }
 
 /// Returns the cosine between a ray and the normal, in cells, of the more slanted of the two faces
 /// at which it enters and leaves the box. Infinite where it does not meet any.
-double RaysApart::facing(const PellucidRay& ray) const noexcept {
+double RaySpacing::facing(const PellucidRay& ray) const noexcept {
   double entry = 0, exit = std::numeric_limits<double>::infinity(), square = 0;
   double of_entry = std::numeric_limits<double>::infinity(), of_exit = of_entry;
   for (int a = 0; a < 3; ++a) {

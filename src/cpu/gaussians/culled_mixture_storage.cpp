@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "near_mixture_storage.h"
+#include "culled_mixture_storage.h"
 
 #include <algorithm>
 #include <array>

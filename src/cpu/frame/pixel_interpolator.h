@@ -32,10 +32,10 @@ namespace pellucid {
 ///
 /// An estimate, not a bound. What a pixel becomes depends on nothing but the pixels of the levels
 /// before.
-class BetweenPixels {
+class PixelInterpolator {
  public:
   /// Null where all pixels are to be traced.
-  static std::unique_ptr<BetweenPixels> make(const Frame& frame, const ImageView& image);
+  static std::unique_ptr<PixelInterpolator> make(const Frame& frame, const ImageView& image);
 
   int stride() const noexcept { return stride_; }
   /// To be called when the pixels of a level are done, not the last: finds out on a few pixels
@@ -44,7 +44,7 @@ class BetweenPixels {
   bool goes_on() const noexcept { return goes_on_; }
   /// Returns the fraction of the tolerance that rays of this level may use, so that some remains
   /// for the pixels between them.
-  double share_of_rays(int stride) const noexcept;
+  double traced_tolerance_fraction(int stride) const noexcept;
 
   /// Returns whether the pixel is one of the levels that are finished.
   bool is_done(int column, int row) const noexcept {
@@ -58,8 +58,8 @@ class BetweenPixels {
   bool find(int column, int row, int stride, RayResult& result) const noexcept;
 
  private:
-  BetweenPixels(const Frame& frame, const ImageView& image, int stride, double voxels,
-                ScreenMask mask);
+  PixelInterpolator(const Frame& frame, const ImageView& image, int stride, double voxels,
+                    ScreenMask mask);
 
   /// Facts of each second pixel of each second row.
   struct Known {

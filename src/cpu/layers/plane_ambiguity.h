@@ -13,7 +13,7 @@ namespace pellucid {
 /// Tells which cells a ray may run in besides those that a walk finds: where it runs along a plane
 /// between cells, rounding decides on which side. And how far off the places are where it crosses
 /// planes: the flatter, the farther.
-class PlaneDoubt {
+class PlaneAmbiguity {
  public:
   using Step = StructuredWalk<double>::Step;
 

@@ -12,12 +12,12 @@ namespace pellucid {
 
 /// Look of a layer beside its functions, as rays need it: light, a factor of the extinction and
 /// surfaces.
-class LayerLook {
+class LayerAppearance {
  public:
   /// The layer is in its place and must outlive the object.
-  explicit LayerLook(const Layer& layer);
-  LayerLook(const LayerLook&) = delete;
-  LayerLook& operator=(const LayerLook&) = delete;
+  explicit LayerAppearance(const Layer& layer);
+  LayerAppearance(const LayerAppearance&) = delete;
+  LayerAppearance& operator=(const LayerAppearance&) = delete;
 
   const Layer& layer() const noexcept { return layer_; }
   /// Return how the medium and how surfaces reflect light; null where the layer has no light.
@@ -61,7 +61,8 @@ class LayerLook {
 
 /// Returns a function that absorbs at the values of the layer's isosurfaces in a channel and no
 /// farther from them than rounding moves data, or by `off`. None: the channel has no isosurfaces.
-std::optional<TransferFunction> isosurface_support(const LayerLook& look, int channel, double off);
+std::optional<TransferFunction> isosurface_support(const LayerAppearance& look, int channel,
+                                                   double off);
 
 /// Crossing of a ray and the plane of a slice.
 struct SlicePosition {

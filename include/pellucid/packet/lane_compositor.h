@@ -11,11 +11,11 @@ namespace pellucid {
 
 /// Results of lanes that fell back to another integrator; zero in other lanes.
 template <int N>
-struct HandedBack {
+struct ScalarFallback {
   double optical_depth[N] = {}, opacity[N] = {}, transparency[N], radiance[3][N] = {};
   double error[N] = {}, opacity_bound[N] = {};
 
-  HandedBack() noexcept {
+  ScalarFallback() noexcept {
     for (double& t : transparency) t = 1;
   }
   void set(int lane, const PellucidCellResult& found) noexcept {
@@ -42,17 +42,19 @@ PellucidRayResult light_of_lane(const SegmentResult<Batch<double, N>>& all, int 
 
 /// Results of rays in lanes, composited in double, and their remaining tolerances, in float.
 template <int N>
-class PacketFold {
+class LaneCompositor {
  public:
   using F = Batch<float, N>;
   using D = Batch<double, N>;
   using M = BatchMask<N>;
 
-  PacketFold() = default;
+  LaneCompositor() = default;
   /// `lengths` of the rays, in world units.
-  PacketFold(double tolerance, double largest_extinction, double largest_color, F lengths) noexcept
-      : PacketFold(F(static_cast<float>(tolerance)), largest_extinction, largest_color, lengths) {}
-  PacketFold(F tolerance, double largest_extinction, double largest_color, F lengths) noexcept
+  LaneCompositor(double tolerance, double largest_extinction, double largest_color,
+                 F lengths) noexcept
+      : LaneCompositor(F(static_cast<float>(tolerance)), largest_extinction, largest_color,
+                       lengths) {}
+  LaneCompositor(F tolerance, double largest_extinction, double largest_color, F lengths) noexcept
       : budget(without_kept_back(tolerance), lengths),
         tolerance_(without_kept_back(tolerance)),
         largest_extinction_(static_cast<float>(largest_extinction)),
@@ -60,8 +62,8 @@ class PacketFold {
 
   RayBudget<F> budget;
 
-  F transparency() const noexcept { return convert<float>(fold_.transparency()); }
-  D opacity() const noexcept { return fold_.opacity(); }
+  F transparency() const noexcept { return convert<float>(compositor_.transparency()); }
+  D opacity() const noexcept { return compositor_.opacity(); }
 
   /// Adds the lanes' segments to their rays, not what they cost.
   template <class T>
@@ -69,15 +71,16 @@ class PacketFold {
     const auto masked = [&](const T& value) noexcept {
       return select(lanes, convert<double>(value), D(0));
     };
-    fold_.add(SegmentResult<D>{masked(s.optical_depth),
-                               masked(s.opacity),
-                               select(lanes, convert<double>(s.transparency), D(1)),
-                               {masked(s.radiance.r), masked(s.radiance.g), masked(s.radiance.b)}});
+    compositor_.add(
+        SegmentResult<D>{masked(s.optical_depth),
+                         masked(s.opacity),
+                         select(lanes, convert<double>(s.transparency), D(1)),
+                         {masked(s.radiance.r), masked(s.radiance.g), masked(s.radiance.b)}});
   }
   /// Adds results that were handed back, of these world lengths, and charges their errors.
-  void add(const HandedBack<N>& s, F lengths) noexcept {
+  void add(const ScalarFallback<N>& s, F lengths) noexcept {
     const F before = transparency();
-    fold_.add(
+    compositor_.add(
         SegmentResult<D>{D::load(s.optical_depth),
                          D::load(s.opacity),
                          D::load(s.transparency),
@@ -93,7 +96,7 @@ class PacketFold {
     return done;
   }
 
-  SegmentResult<D> result() const noexcept { return fold_.result(); }
+  SegmentResult<D> result() const noexcept { return compositor_.result(); }
   /// Returns the errors of rays of so many segments. Folding in double costs 4 u a segment, adding
   /// up costs in float 2 u of them.
   D error(D segments) const noexcept {
@@ -105,10 +108,10 @@ class PacketFold {
            D(folding * largest_color_) * all;
   }
 
-  friend PacketFold select(M mask, const PacketFold& a, const PacketFold& b) noexcept {
-    PacketFold r = a;
+  friend LaneCompositor select(M mask, const LaneCompositor& a, const LaneCompositor& b) noexcept {
+    LaneCompositor r = a;
     r.budget = select(mask, a.budget, b.budget);
-    r.fold_ = select(mask, a.fold_, b.fold_);
+    r.compositor_ = select(mask, a.compositor_, b.compositor_);
     r.cut_off_ = (mask & a.cut_off_) | ((!mask) & b.cut_off_);
     return r;
   }
@@ -126,7 +129,7 @@ class PacketFold {
                                   F(static_cast<float>(largest_color_)));
   }
 
-  FrontToBackCompositor<D> fold_;
+  FrontToBackCompositor<D> compositor_;
   F tolerance_{0};  ///< that the budget began with
   float largest_extinction_ = 0;
   double largest_color_ = 0;

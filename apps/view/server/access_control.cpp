@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gate.h"
+#include "access_control.h"
 
 #include <unistd.h>
 
@@ -10,14 +10,14 @@
 
 namespace pellucid::view {
 
-Gate::Gate(std::string token, std::uint16_t port) : token_(std::move(token)) {
+AccessControl::AccessControl(std::string token, std::uint16_t port) : token_(std::move(token)) {
   // Browsers leave out the port that they take for HTTP anyway.
   const std::string suffix = port == 80 ? "" : ":" + std::to_string(port);
   local_name_ = "localhost" + suffix;
   local_number_ = "127.0.0.1" + suffix;
 }
 
-std::optional<std::string_view> Gate::admit(const Caller& caller) const noexcept {
+std::optional<std::string_view> AccessControl::admit(const Caller& caller) const noexcept {
   if (!caller.host || (*caller.host != local_name_ && *caller.host != local_number_)) return {};
   constexpr std::string_view scheme = "http://";
   if (caller.origin) {
@@ -35,7 +35,7 @@ std::optional<std::string_view> Gate::admit(const Caller& caller) const noexcept
   return target.substr(path);
 }
 
-std::string Gate::address() const {
+std::string AccessControl::address() const {
   return "http://" + local_number_ + "/" + token_ + "/";
 }
 

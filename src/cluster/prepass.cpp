@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "survey.h"
+#include "prepass.h"
 
 #include <algorithm>
 #include <cmath>

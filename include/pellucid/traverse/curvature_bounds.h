@@ -7,10 +7,10 @@ namespace pellucid {
 
 /// Bounds, rounded upward, on how fast the derivative of the data of one block changes. Infinite
 /// where the block has vacuum.
-struct BlockBends {
+struct CurvatureBounds {
   /// Along each axis, the largest jump of the derivative by that axis's grid coordinate across a
   /// plane of cells: those inside of the block and its upper face (the lower is its neighbour's).
-  float bend[3];
+  float second_difference[3];
   /// The largest mixed derivative inside of a cell: by y and z, z and x, x and y.
   float twist[3];
 };
@@ -27,26 +27,27 @@ struct BlockBends {
 /// do not count, even where what is said of them is unbounded. T: double, or a number of several
 /// rays at once.
 template <class T>
-PELLUCID_HD T derivative_variation(const T (&bend)[3], const T (&twist)[3], const T (&speed)[3],
-                                   const T (&planes)[3], T length) noexcept {
+PELLUCID_HD T derivative_variation(const T (&second_difference)[3], const T (&twist)[3],
+                                   const T (&speed)[3], const T (&planes)[3], T length) noexcept {
   T sum(0);
   for (int a = 0; a < 3; ++a) {
     const T both = speed[(a + 1) % 3] * speed[(a + 2) % 3];
     sum += select(both > T(0), T(2) * length * (both * twist[a]), T(0));
-    sum += select(speed[a] > T(0), speed[a] * planes[a] * bend[a], T(0));
+    sum += select(speed[a] > T(0), speed[a] * planes[a] * second_difference[a], T(0));
   }
   return sum * T(1 + 32 * rounding_unit<T>);
 }
-PELLUCID_HD inline double derivative_variation(const BlockBends& bends, Vec3<double> direction,
-                                               Vec3<double> least_width, double length) noexcept {
-  double bend[3], twist[3], speed[3], planes[3];
+PELLUCID_HD inline double derivative_variation(const CurvatureBounds& curvature,
+                                               Vec3<double> direction, Vec3<double> least_width,
+                                               double length) noexcept {
+  double second_difference[3], twist[3], speed[3], planes[3];
   for (int a = 0; a < 3; ++a) {
-    bend[a] = static_cast<double>(bends.bend[a]);
-    twist[a] = static_cast<double>(bends.twist[a]);
+    second_difference[a] = static_cast<double>(curvature.second_difference[a]);
+    twist[a] = static_cast<double>(curvature.twist[a]);
     speed[a] = abs(direction[a]);
     planes[a] = speed[a] * length / least_width[a] + 1;
   }
-  return derivative_variation(bend, twist, speed, planes, length);
+  return derivative_variation(second_difference, twist, speed, planes, length);
 }
 
 /// Returns a bound on the distance from the chord of a stretch of data whose derivative varies by
@@ -64,10 +65,11 @@ PELLUCID_HD inline double bend_deviation(double variation, double length) noexce
   return 0.25 * length * variation;
 }
 
-PELLUCID_HD inline BlockBends join(const BlockBends& p, const BlockBends& q) noexcept {
-  BlockBends result;
+PELLUCID_HD inline CurvatureBounds join(const CurvatureBounds& p,
+                                        const CurvatureBounds& q) noexcept {
+  CurvatureBounds result;
   for (int a = 0; a < 3; ++a) {
-    result.bend[a] = max(p.bend[a], q.bend[a]);
+    result.second_difference[a] = max(p.second_difference[a], q.second_difference[a]);
     result.twist[a] = max(p.twist[a], q.twist[a]);
   }
   return result;
