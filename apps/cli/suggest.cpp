@@ -56,12 +56,12 @@ bool are_value_and_gradient(const ChannelSelection& selection) {
   return false;
 }
 
-/// With widths where the primitive has those of the channels.
-GaussianShape shape_of(const GaussianPrimitive& primitive) {
+/// Returns the widths of a primitive that has those of the channels; none of others.
+std::optional<GaussianShape> widths_of(const GaussianPrimitive& primitive) {
   GaussianWidths widths;
   for (std::size_t i = 0; i < primitive.matrix.size(); ++i) {
     for (std::size_t j = 0; j < primitive.matrix[i].size(); ++j) {
-      if (i != j && primitive.matrix[i][j] != 0) return GaussianMatrix{primitive.matrix};
+      if (i != j && primitive.matrix[i][j] != 0) return std::nullopt;
     }
     // As it was rounded before it became a matrix.
     widths.widths.push_back(std::stod(fmt::format("{:.9g}", 1 / primitive.matrix[i][i])));
@@ -69,13 +69,13 @@ GaussianShape shape_of(const GaussianPrimitive& primitive) {
   return widths;
 }
 
-MultivariateDescription described(const std::vector<GaussianPrimitive>& primitives,
+MultivariateDescription described(std::vector<GaussianPrimitive> primitives,
                                   const std::vector<std::string>& axes) {
-  MultivariateDescription function;
-  for (const GaussianPrimitive& p : primitives) {
-    function.gaussians.push_back({axes, p.center, shape_of(p), p.extinction, p.color});
+  for (GaussianPrimitive& p : primitives) {
+    p.channels.assign(axes.begin(), axes.end());
+    p.shape = widths_of(p);
   }
-  return function;
+  return {{}, std::move(primitives), {}, {}};
 }
 
 int run_suggest(const SuggestArguments& arguments) {

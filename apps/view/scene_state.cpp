@@ -84,10 +84,13 @@ void use_matrices(LayerDescription& layer) {
   if (!layer.transfer_function) return;
   auto* const function = std::get_if<MultivariateDescription>(&*layer.transfer_function);
   if (function == nullptr) return;
-  for (GaussianDescription& gaussian : function->gaussians) {
-    gaussian.shape = GaussianMatrix{gaussian_matrix(gaussian.shape)};
+  for (GaussianPrimitive& gaussian : function->gaussians) {
+    gaussian.matrix = gaussian_matrix(gaussian);
+    gaussian.shape.reset();
     if (!gaussian.channels.empty()) continue;
-    gaussian.channels = function->channels.empty() ? function_channels(layer) : function->channels;
+    const std::vector<std::string> names =
+        function->channels.empty() ? function_channels(layer) : function->channels;
+    gaussian.channels.assign(names.begin(), names.end());
   }
 }
 

@@ -31,15 +31,12 @@ MultivariateDescription suggest_gaussians(const LayerDescription& layer,
   std::vector<int> which(
       static_cast<std::size_t>(std::min(channels.count(), max_suggested_channels)));
   std::iota(which.begin(), which.end(), 0);
-  const std::vector<GaussianPrimitive> primitives =
-      is_field ? suggest_boundaries(channels, 0, 1, parallel, control)
-               : suggest_mixture(channels, which, 0, parallel, control);
   MultivariateDescription function;
+  function.gaussians = is_field ? suggest_boundaries(channels, 0, 1, parallel, control)
+                                : suggest_mixture(channels, which, 0, parallel, control);
   for (const int channel : which) function.channels.push_back(channels[channel].name);
-  for (const GaussianPrimitive& primitive : primitives) {
-    function.gaussians.push_back({function.channels, primitive.center,
-                                  GaussianMatrix{primitive.matrix}, primitive.extinction,
-                                  primitive.color});
+  for (GaussianPrimitive& primitive : function.gaussians) {
+    primitive.channels.assign(function.channels.begin(), function.channels.end());
   }
   return function;
 }

@@ -31,12 +31,11 @@ py::object import_file(const std::filesystem::path& path, const std::string& nam
   const py::object scene = py::module_::import("pellucid.scene");
   py::object shading = py::none(), gradient_opacity = py::none();
   if (imported.shading) {
-    const Shading& s = imported.shading->values;
+    const Shading& s = *imported.shading;
     shading = scene.attr("Shading")(s.ambient, s.diffuse, s.specular, s.power);
   }
   if (imported.gradient_opacity) {
-    gradient_opacity = py::cast(std::make_shared<GradientOpacity>(
-        imported.gradient_opacity->points, imported.gradient_opacity->unit, 0));
+    gradient_opacity = py::cast(held(imported.gradient_opacity));
   }
   return py::module_::import("pellucid._notes")
       .attr("ImportedTransferFunction")(OpacityTableHandle{imported.table}, shading,

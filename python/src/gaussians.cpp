@@ -12,7 +12,7 @@ namespace pellucid::python {
 namespace {
 
 /// Reads a pellucid.Gaussian, or a text as `pellucid render --gaussian` takes it.
-GaussianDescription gaussian_of(const py::handle& object) {
+GaussianPrimitive gaussian_of(const py::handle& object) {
   if (py::isinstance<py::str>(object)) return parse_gaussian(py::cast<std::string>(object));
   if (!py::hasattr(object, "center") || !py::hasattr(object, "covariance")) {
     throw Error(
@@ -22,9 +22,10 @@ GaussianDescription gaussian_of(const py::handle& object) {
   }
   using Numbers = std::vector<double>;
   using Matrix = std::vector<Numbers>;
-  GaussianDescription gaussian;
+  GaussianPrimitive gaussian;
   if (const py::object names = object.attr("channels"); !names.is_none()) {
-    gaussian.channels = py::cast<std::vector<std::string>>(names);
+    const auto list = py::cast<std::vector<std::string>>(names);
+    gaussian.channels.assign(list.begin(), list.end());
   }
   gaussian.center = py::cast<Numbers>(object.attr("center"));
   const py::object widths = object.attr("widths"), covariance = object.attr("covariance"),
@@ -38,7 +39,7 @@ GaussianDescription gaussian_of(const py::handle& object) {
   } else if (!covariance.is_none()) {
     gaussian.shape = GaussianCovariance{py::cast<Matrix>(covariance)};
   } else {
-    gaussian.shape = GaussianMatrix{py::cast<Matrix>(matrix)};
+    gaussian.matrix = py::cast<Matrix>(matrix);
   }
   gaussian.extinction = number_of(object.attr("extinction"), "gaussian: extinction");
   gaussian.color = color_of(object.attr("color"), "gaussian: color");
@@ -57,12 +58,12 @@ GaussiansHandle make_gaussians(
   }
   for (const auto& [channel, function] : tables) {
     if (!function) throw Error("tables: " + channel + ": expected a TransferFunction, got None");
-    handle.description.tables.push_back({channel, function->points()});
+    handle.description.tables.push_back({channel, TransferFunction(function->points())});
   }
   if (factor) {
-    ChannelFactorDescription& by = handle.description.factor.emplace();
-    by.channel = factor->first;
-    for (const auto& [value, number] : factor->second) by.points.push_back({value, number});
+    std::vector<TransferFunction::Point> points;
+    for (const auto& [value, number] : factor->second) points.push_back({value, number, {}});
+    handle.description.factor = {factor->first, TransferFunction(std::move(points))};
   }
   handle.function = make_multivariate(handle.description, channels);
   handle.channels = std::move(channels);
@@ -73,16 +74,9 @@ GaussiansHandle make_gaussians(
 GaussiansHandle from_primitives(const std::vector<GaussianPrimitive>& primitives,
                                 const std::vector<std::string>& channels) {
   GaussiansHandle handle;
-  for (const GaussianPrimitive& primitive : primitives) {
-    GaussianDescription gaussian;
-    for (const int c : primitive.channels) {
-      gaussian.channels.push_back(channels[static_cast<std::size_t>(c)]);
-    }
-    gaussian.center = primitive.center;
-    gaussian.shape = GaussianMatrix{primitive.matrix};
-    gaussian.extinction = primitive.extinction;
-    gaussian.color = primitive.color;
-    handle.description.gaussians.push_back(std::move(gaussian));
+  handle.description.gaussians = primitives;
+  for (GaussianPrimitive& primitive : handle.description.gaussians) {
+    for (ChannelRef& c : primitive.channels) c = channels[static_cast<std::size_t>(c.index())];
   }
   handle.channels = channels;
   handle.function = make_multivariate(handle.description, channels);
@@ -136,17 +130,20 @@ GaussiansHandle suggested_boundaries(const ChannelsHandle& handle, const std::st
 py::list gaussian_list(const GaussiansHandle& handle) {
   const py::object make = py::module_::import("pellucid.scene").attr("Gaussian");
   py::list list;
-  for (const GaussianDescription& g : handle.description.gaussians) {
+  for (const GaussianPrimitive& g : handle.description.gaussians) {
     py::dict shape;
-    if (const auto* const widths = std::get_if<GaussianWidths>(&g.shape)) {
+    const auto* const widths = g.shape ? std::get_if<GaussianWidths>(&*g.shape) : nullptr;
+    if (widths != nullptr) {
       shape["widths"] = widths->widths;
       if (!widths->axes.empty()) shape["axes"] = widths->axes;
-    } else if (const auto* const covariance = std::get_if<GaussianCovariance>(&g.shape)) {
-      shape["covariance"] = covariance->covariance;
+    } else if (g.shape) {
+      shape["covariance"] = std::get<GaussianCovariance>(*g.shape).covariance;
     } else {
-      shape["matrix"] = std::get<GaussianMatrix>(g.shape).matrix;
+      shape["matrix"] = g.matrix;
     }
-    if (!g.channels.empty()) shape["channels"] = g.channels;
+    py::list channels;
+    for (const ChannelRef& channel : g.channels) channels.append(channel.name());
+    if (!g.channels.empty()) shape["channels"] = channels;
     list.append(make(py::arg("center") = g.center, py::arg("extinction") = g.extinction,
                      py::arg("color") = to_tuple(g.color), **shape));
   }
@@ -157,10 +154,10 @@ py::object factor_of(const GaussiansHandle& handle) {
   const auto& factor = handle.description.factor;
   if (!factor) return py::none();
   py::list points;
-  for (const ChannelFactorDescription::Point& point : factor->points) {
-    points.append(py::make_tuple(point.value, point.factor));
+  for (const TransferFunction::Point& point : factor->function.points()) {
+    points.append(py::make_tuple(point.value, point.extinction));
   }
-  return py::make_tuple(factor->channel, points);
+  return py::make_tuple(factor->channel.name(), points);
 }
 
 }  // namespace

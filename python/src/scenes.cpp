@@ -399,36 +399,6 @@ void fit_tables(PythonScene& made, const py::object& layers) {
   }
 }
 
-/// Writes into the description how a layer looks.
-void describe_look(const Layer& layer, LayerDescription& to) {
-  to.name = layer.name;
-  to.visible = layer.visible;
-  to.transform = layer.transform;
-  to.clips = layer.clips;
-  to.projection = layer.projection;
-  const std::vector<std::string> names = function_channels(to);
-  const auto name_of = [&](int channel) {
-    return names.empty() || channel == 0 ? std::string()
-                                         : names.at(static_cast<std::size_t>(channel));
-  };
-  const auto points_of = [](const std::shared_ptr<const TransferFunction>& colors) {
-    return colors ? std::optional<TransferFunctionDescription>(colors->points()) : std::nullopt;
-  };
-  if (layer.shading)
-    to.shading = ShadingDescription{*layer.shading, name_of(layer.shading->channel)};
-  if (const auto& opacity = layer.gradient_opacity) {
-    to.gradient_opacity =
-        GradientOpacityDescription{opacity->points(), opacity->unit(), name_of(opacity->channel())};
-  }
-  for (const Isosurface& s : layer.isosurfaces) {
-    to.isosurfaces.push_back({s.value, s.opacity, s.color, points_of(s.colors), name_of(s.channel),
-                              name_of(s.color_channel)});
-  }
-  for (const Slice& s : layer.slices) {
-    to.slices.push_back({s.point, s.normal, s.opacity, points_of(s.colors), name_of(s.channel)});
-  }
-}
-
 }  // namespace
 
 Camera camera_of(const py::object& object) {
@@ -450,7 +420,10 @@ SceneDescription described(const PythonScene& made) {
   const Scene& scene = made.scene;
   SceneDescription description = made.description;
   for (std::size_t i = 0; i < scene.layers.size(); ++i) {
-    describe_look(scene.layers[i], description.layers[i]);
+    LayerDescription& layer = description.layers[i];
+    static_cast<Layer&>(layer) = scene.layers[i];
+    layer.content = {};
+    name_channels(layer);
   }
   description.clips = scene.clips;
   description.lights = scene.lights;

@@ -66,11 +66,11 @@ class Maker {
     for (const Clip& each : layer.clips) clips.append(clip(each));
     for (const Isosurface& s : layer.isosurfaces) {
       isosurfaces.append(of("Isosurface")(s.value, to_tuple(s.color), s.opacity, colors(s.colors),
-                                          s.channel, s.color_channel));
+                                          s.channel.index(), s.color_channel.index()));
     }
     for (const Slice& s : layer.slices) {
       slices.append(of("Slice")(to_tuple(s.point), to_tuple(s.normal), s.opacity, colors(s.colors),
-                                s.channel));
+                                s.channel.index()));
     }
     parts["clips"] = clips;
     parts["isosurfaces"] = isosurfaces;
@@ -124,7 +124,7 @@ class Maker {
         handle.description = std::get<MultivariateDescription>(*described);
       } else {
         handle.description.tables.push_back(
-            {handle.channels.front(), made->tables().front().function.points()});
+            {handle.channels.front(), made->tables().front().function});
       }
       return py::cast(std::move(handle));
     };
@@ -149,7 +149,7 @@ class Maker {
 
   py::object shading(const Shading& s) const {
     return of("Shading")(s.ambient, s.diffuse, s.specular, s.power,
-                         std::string(gradient_kind_name(s.gradient)), s.flatness, s.channel,
+                         std::string(gradient_kind_name(s.gradient)), s.flatness, s.channel.index(),
                          s.flat_gradient);
   }
 

@@ -51,8 +51,8 @@ std::string_view gradient_kind_name(GradientKind kind) noexcept {
   return kind == GradientKind::smooth ? "smooth" : "field";
 }
 
-GradientOpacity::GradientOpacity(std::vector<Point> points, Unit unit, int channel)
-    : points_(std::move(points)), unit_(unit), channel_(channel) {
+GradientOpacity::GradientOpacity(std::vector<Point> points, Unit unit, ChannelRef channel)
+    : points_(std::move(points)), unit_(unit), channel_(std::move(channel)) {
   try {
     factors(points_, 1);
   } catch (const Error& error) {

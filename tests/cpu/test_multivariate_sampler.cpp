@@ -46,7 +46,7 @@ Channel channel(int which, double scale, Centering centering, bool holes = false
 }
 
 /// Primitives, the channels that it looks at, its center and widths by channel.
-GaussianPrimitive primitive(std::vector<int> channels, std::vector<double> center,
+GaussianPrimitive primitive(std::vector<ChannelRef> channels, std::vector<double> center,
                             std::vector<double> widths, double extinction, Rgb<double> color) {
   GaussianPrimitive p;
   p.channels = std::move(channels);

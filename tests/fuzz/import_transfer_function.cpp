@@ -45,9 +45,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const pellucid::LookDescription look{table, imported.shading, imported.gradient_opacity};
     const std::string with_light = pellucid::look_to_json(look);
     require(pellucid::look_to_json(pellucid::parse_look(with_light, "again")) == with_light);
-    if (look.gradient_opacity) {
-      const pellucid::GradientOpacity made(look.gradient_opacity->points);
-    }
     pellucid::export_transfer_function(look, {pellucid::ExportFormat::table, 0.05});
   } catch (const pellucid::Error& error) {
     const std::string_view message = error.what();

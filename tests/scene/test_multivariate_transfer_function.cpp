@@ -24,7 +24,7 @@ using Matrix = std::vector<std::vector<double>>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-GaussianPrimitive primitive(std::vector<int> channels = {0, 2}) {
+GaussianPrimitive primitive(std::vector<ChannelRef> channels = {0, 2}) {
   GaussianPrimitive p;
   p.channels = std::move(channels);
   p.center = {1, -2};

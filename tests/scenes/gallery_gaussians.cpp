@@ -29,7 +29,7 @@ Exhibit exhibit(std::vector<VolumePointer> volumes, Primitives primitives, Table
 }
 
 /// Over some of the channels, with a K of its own.
-GaussianPrimitive over(std::vector<int> channels, std::vector<double> center,
+GaussianPrimitive over(std::vector<ChannelRef> channels, std::vector<double> center,
                        std::vector<std::vector<double>> matrix, double extinction,
                        Rgb<double> color) {
   return {std::move(channels), std::move(center), std::move(matrix), extinction, color};
@@ -38,7 +38,7 @@ GaussianPrimitive over(std::vector<int> channels, std::vector<double> center,
 /// Over the first channels, with 1/e widths along their axes.
 GaussianPrimitive gaussian(std::vector<double> center, const std::vector<double>& widths,
                            double extinction, Rgb<double> color) {
-  std::vector<int> channels;
+  std::vector<ChannelRef> channels;
   for (std::size_t i = 0; i < center.size(); ++i) channels.push_back(static_cast<int>(i));
   return over(std::move(channels), std::move(center), matrix_from_widths(widths), extinction,
               color);

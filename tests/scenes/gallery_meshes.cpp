@@ -38,7 +38,7 @@ Exhibit exhibit(MeshChannelsPointer mesh, std::vector<GaussianPrimitive> primiti
   return result;
 }
 
-GaussianPrimitive gaussian(std::vector<int> channels, std::vector<double> center,
+GaussianPrimitive gaussian(std::vector<ChannelRef> channels, std::vector<double> center,
                            std::vector<std::vector<double>> matrix, double extinction,
                            Rgb<double> color) {
   return {std::move(channels), std::move(center), std::move(matrix), extinction, color};

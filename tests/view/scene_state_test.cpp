@@ -61,8 +61,7 @@ TEST(SceneState, SuggestionsSayWhetherThereIsLight) {
   ASSERT_TRUE(is_lit());
   MultivariateDescription gaussians;
   gaussians.channels = {"value"};
-  gaussians.gaussians.push_back(
-      {gaussians.channels, {0.5}, GaussianWidths{{0.1}, {}}, 1, {1, 1, 1}});
+  gaussians.gaussians.push_back({{"value"}, {0.5}, {{10}}, 1, {1, 1, 1}});
   state.set_gaussians(0, gaussians);
   EXPECT_FALSE(is_lit());
   state.undo();
@@ -74,8 +73,7 @@ TEST(SceneState, SuggestionsSayWhetherThereIsLight) {
 MultivariateDescription gaussian_at(double center) {
   MultivariateDescription function;
   function.channels = {"value"};
-  function.gaussians.push_back(
-      {function.channels, {center}, GaussianWidths{{0.1}, {}}, 1, {1, 1, 1}});
+  function.gaussians.push_back({{"value"}, {center}, {{10}}, 1, {1, 1, 1}});
   return function;
 }
 

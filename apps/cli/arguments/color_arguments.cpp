@@ -28,9 +28,11 @@ ColorMap color_map_of(const std::string& name) {
 
 /// Multiplies the extinctions of all terms.
 void scale(MultivariateDescription& function, double factor) {
-  for (GaussianDescription& gaussian : function.gaussians) gaussian.extinction *= factor;
-  for (ChannelTableDescription& table : function.tables) {
-    for (TransferFunction::Point& point : table.points) point.extinction *= factor;
+  for (GaussianPrimitive& gaussian : function.gaussians) gaussian.extinction *= factor;
+  for (ChannelTransferFunction& table : function.tables) {
+    std::vector<TransferFunction::Point> points = table.function.points();
+    for (TransferFunction::Point& point : points) point.extinction *= factor;
+    table.function = TransferFunction(std::move(points));
   }
 }
 

@@ -56,28 +56,17 @@ void LightArguments::apply(LayerDescription& layer) const {
                      ": a projected layer has no light and no surfaces; drop it or --projection");
   }
   for (const std::string& text : isosurfaces) {
-    const Isosurface surface = parse_isosurface("--iso", text);
-    const auto is_same = [&](const IsosurfaceDescription& other) {
-      return other.value == surface.value && other.channel.empty();
+    Isosurface surface = parse_isosurface("--iso", text);
+    const auto is_same = [&](const Isosurface& other) {
+      return other.value == surface.value && other.channel == surface.channel;
     };
     if (std::ranges::any_of(layer.isosurfaces, is_same)) {
       throw UsageError(fmt::format("--iso '{}': there is an isosurface of {} already; drop it",
                                    text, surface.value));
     }
-    IsosurfaceDescription added;
-    added.value = surface.value;
-    added.color = surface.color;
-    added.opacity = surface.opacity;
-    layer.isosurfaces.push_back(std::move(added));
+    layer.isosurfaces.push_back(std::move(surface));
   }
-  for (const std::string& text : slices) {
-    const Slice slice = parse_slice("--slice", text);
-    SliceDescription added;
-    added.point = slice.point;
-    added.normal = slice.normal;
-    added.opacity = slice.opacity;
-    layer.slices.push_back(std::move(added));
-  }
+  for (const std::string& text : slices) layer.slices.push_back(parse_slice("--slice", text));
   if (shading == "off") {
     layer.shading.reset();
     return;
@@ -86,7 +75,7 @@ void LightArguments::apply(LayerDescription& layer) const {
   if (wanted && !layer.shading) layer.shading.emplace();
   if (shading.empty() || shading == "on") return;
   const Shading given = parse_shading("--shading", shading);
-  Shading& values = layer.shading->values;
+  Shading& values = *layer.shading;
   values.ambient = given.ambient;
   values.diffuse = given.diffuse;
   values.specular = given.specular;
@@ -98,8 +87,8 @@ void LightArguments::apply(SceneDescription& scene) const {
   for (const std::string& text : lights) scene.lights.push_back(parse_light("--light", text));
 }
 
-void take_look(const std::optional<ShadingDescription>& shading,
-               const std::optional<GradientOpacityDescription>& gradient_opacity,
+void take_look(const std::optional<Shading>& shading,
+               const std::shared_ptr<const GradientOpacity>& gradient_opacity,
                const std::string& file, LayerDescription& layer, std::vector<std::string>& notes) {
   if (!shading && !gradient_opacity) return;
   if (layer.projection || layer.labels) {

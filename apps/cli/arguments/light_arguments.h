@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,8 +27,8 @@ struct LightArguments {
 
 /// Gives the layer the shading and the gradient opacity of a transfer function's file, where it has
 /// none of its own; where they do not apply, a note says so. `file` begins the note.
-void take_look(const std::optional<ShadingDescription>& shading,
-               const std::optional<GradientOpacityDescription>& gradient_opacity,
+void take_look(const std::optional<Shading>& shading,
+               const std::shared_ptr<const GradientOpacity>& gradient_opacity,
                const std::string& file, LayerDescription& layer, std::vector<std::string>& notes);
 
 }  // namespace pellucid::cli

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pellucid/io/look_description.h"
+#include "pellucid/io/transfer_function_description.h"
 
 namespace pellucid {
 

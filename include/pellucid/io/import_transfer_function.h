@@ -3,12 +3,13 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "pellucid/io/look_description.h"
+#include "pellucid/io/transfer_function_description.h"
 
 namespace pellucid {
 
@@ -38,10 +39,11 @@ inline constexpr double largest_deviation = 0.1;
 /// A transfer function of another program as an opacity table.
 struct ImportedTransferFunction {
   OpacityTable table;  ///< its deviations are upper bounds
-  std::optional<ShadingDescription> shading;
+  std::optional<Shading> shading;
   /// Its unit is the voxel: VTK's magnitudes are per mean spacing. It multiplies the extinction:
-  /// VTK multiplies the opacity of a sample, which is the same in the limit of short steps.
-  std::optional<GradientOpacityDescription> gradient_opacity;
+  /// VTK multiplies the opacity of a sample, which is the same in the limit of short steps. Null:
+  /// there is none.
+  std::shared_ptr<const GradientOpacity> gradient_opacity;
   std::string format;  ///< shown to the user, such as "ParaView color map"
   std::string name;    ///< in the file; may be empty
   /// Messages for the user, one line each: what is exact, what is fitted and with which deviation,

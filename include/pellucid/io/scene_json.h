@@ -12,7 +12,6 @@
 
 #include "pellucid/io/channel_source.h"
 #include "pellucid/io/field_source.h"
-#include "pellucid/io/look_description.h"
 #include "pellucid/io/mesh_source.h"
 #include "pellucid/io/transfer_function_description.h"
 #include "pellucid/scene/function_change.h"
@@ -50,10 +49,10 @@ struct WantedLook {
   std::function<void(const Look&)> chosen{};  ///< is told the look; may be empty
 };
 
-/// A layer as written in a file. Absent keys have their defaults.
-struct LayerDescription {
-  std::string name;
-  bool visible = true;
+/// A layer as written in a file: how it looks and where it lies, and the sources of its data and of
+/// its function. make_scene() makes the content, which is empty here, and finds the indices of
+/// channels that have names. Absent keys have their defaults.
+struct LayerDescription : Layer {
   FieldSource field;
   std::vector<ChannelSource> channels;  ///< replaces `field` unless empty
   std::optional<MeshSource> mesh;       ///< replaces `field` and `channels`
@@ -64,13 +63,6 @@ struct LayerDescription {
   /// points that it gives; scene files have those.
   FunctionChange function_change;
   std::optional<MaskSource> mask;
-  Affine<double> transform;
-  std::vector<Clip> clips;
-  std::optional<LayerProjection> projection;
-  std::optional<ShadingDescription> shading;
-  std::optional<GradientOpacityDescription> gradient_opacity;
-  std::vector<IsosurfaceDescription> isosurfaces;
-  std::vector<SliceDescription> slices;
   /// Scene files do not have it: complete_description() writes down what it came to.
   std::optional<WantedLook> look;
 
@@ -155,6 +147,10 @@ std::vector<ChannelSource> layer_channels(const LayerDescription& layer);
 std::vector<std::string> function_channels(const LayerDescription& layer);
 /// Returns the names that a term of the layer's function may refer to; for a field all three.
 std::vector<std::string> known_channels(const LayerDescription& layer);
+
+/// Gives the channels of the layer's light and surfaces their names, but the first one, which needs
+/// none. Throws Error for an index that is not there.
+void name_channels(LayerDescription& layer);
 
 /// Reads the data, and adds the defaults for the camera (default_camera() of visible_corners()),
 /// for the transfer function of a field or of one array of a mesh (of a projected layer:

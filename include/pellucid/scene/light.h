@@ -72,7 +72,7 @@ struct Shading {
   GradientKind gradient = GradientKind::smooth;
   /// g0 as a share of the range of the data per voxel, of the medium and of surfaces; >= 0.
   std::optional<double> flatness{};
-  int channel = 0;  ///< variable whose gradient it is, of several
+  ChannelRef channel{};  ///< variable whose gradient it is, of several
   /// g0 of the medium, in data units per world length; >= 0.
   std::optional<double> flat_gradient{};
 
@@ -94,11 +94,12 @@ class GradientOpacity {
   enum class Unit { world, voxel };
 
   /// Throws Error as TransferFunction does, and if a magnitude is negative.
-  explicit GradientOpacity(std::vector<Point> points, Unit unit = Unit::world, int channel = 0);
+  explicit GradientOpacity(std::vector<Point> points, Unit unit = Unit::world,
+                           ChannelRef channel = {});
 
   const std::vector<Point>& points() const noexcept { return points_; }
   Unit unit() const noexcept { return unit_; }
-  int channel() const noexcept { return channel_; }
+  const ChannelRef& channel() const noexcept { return channel_; }
   double largest_factor() const noexcept { return largest_; }
   /// Returns the same function of the magnitude per world length, with factors in the place of
   /// extinctions. `voxel`: the size of a voxel in world units.
@@ -107,7 +108,7 @@ class GradientOpacity {
  private:
   std::vector<Point> points_;
   Unit unit_;
-  int channel_;
+  ChannelRef channel_;
   double largest_ = 0;
 };
 

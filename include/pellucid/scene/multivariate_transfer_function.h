@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "pellucid/scene/transfer_function.h"
@@ -9,15 +11,27 @@
 
 namespace pellucid {
 
+/// The shape of a Gaussian as files have it, for one of the three functions below.
+struct GaussianWidths {
+  std::vector<double> widths;
+  std::vector<std::vector<double>> axes;  ///< empty: the channels' axes
+};
+struct GaussianCovariance {
+  std::vector<std::vector<double>> covariance;
+};
+using GaussianShape = std::variant<GaussianWidths, GaussianCovariance>;
+
 /// A Gaussian primitive over some of the channels (Kniss et al. 2003). Its extinction is peak ·
 /// e^(-|K (v - c)|²) with the values v of its channels. There is no factor 1/2.
 struct GaussianPrimitive {
-  std::vector<int> channels;                ///< indices of its channels, each once
+  std::vector<ChannelRef> channels;         ///< each once; empty: those of the written function
   std::vector<double> center;               ///< c, one number per channel of the primitive
   std::vector<std::vector<double>> matrix;  ///< K by rows: 1 … 8 rows, one column per channel; any
                                             ///< rank
   double extinction = 0;  ///< the peak, 1/length in world units, >= 0
   Rgb<double> color{};    ///< linear RGB of the particles, not premultiplied, >= 0
+  /// What a file has in place of the matrix; make_multivariate() makes the matrix of it.
+  std::optional<GaussianShape> shape{};
 };
 
 /// Returns the K of a primitive whose axes are the channels: the extinction falls to 1/e of its
@@ -33,9 +47,10 @@ std::vector<std::vector<double>> matrix_from_widths(const std::vector<double>& w
 std::vector<std::vector<double>> matrix_from_covariance(
     const std::vector<std::vector<double>>& covariance);
 
-/// A piecewise-linear transfer function of one channel.
+/// A piecewise-linear transfer function of one channel. A written one whose channel has an empty
+/// name is of the only channel.
 struct ChannelTransferFunction {
-  int channel = 0;
+  ChannelRef channel{};
   TransferFunction function;
 };
 
@@ -89,6 +104,15 @@ class MultivariateTransferFunction {
   std::vector<Gaussian<double>> gaussian_view_;
   std::vector<ChannelTable<double>> table_view_;
   double largest_color_ = 0, largest_factor_ = 1, largest_extinction_ = 0;
+};
+
+/// A function of several channels as written: the sum of its terms, times the factor.
+/// make_multivariate() (io/transfer_function_description.h) finds the channels that it names.
+struct MultivariateDescription {
+  std::vector<std::string> channels;  ///< for Gaussians that name none; empty: all, in order
+  std::vector<GaussianPrimitive> gaussians;
+  std::vector<ChannelTransferFunction> tables;
+  std::optional<ChannelTransferFunction> factor{};
 };
 
 }  // namespace pellucid

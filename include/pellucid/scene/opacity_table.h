@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <optional>
+#include <string>
+#include <variant>
 #include <vector>
 
-#include "pellucid/scene/transfer_function.h"
+#include "pellucid/scene/multivariate_transfer_function.h"
 
 namespace pellucid {
 
@@ -14,6 +18,17 @@ struct OpacityPoint {
   double opacity = 0;   ///< in [0,1], of a layer as thick as the unit distance
   Rgb<double> color{};  ///< linear RGB of the particles, not premultiplied, >= 0
 };
+
+/// An opacity table as in other programs: opacities of a layer as thick as unit_distance.
+struct OpacityTable {
+  std::vector<OpacityPoint> points;
+  double unit_distance = 1;  ///< in world units
+  /// If the table is a fit to another function: upper bounds on the deviation of the extinction, as
+  /// |ln| of the ratio, and of each color channel, linear. Both count against the tolerance.
+  double extinction_deviation = 0, color_deviation = 0;
+};
+/// Upper limits of an OpacityTable's deviations.
+inline constexpr double largest_extinction_deviation = 0.5, largest_color_deviation = 1;
 
 /// Extinction · unit distance that replaces the infinite extinction of opacity 1.
 inline constexpr double opaque_extinction = 1e6;
@@ -60,5 +75,16 @@ TransferFunction transfer_function_from_opacity_table(const std::vector<OpacityP
 /// Limitation: below 1e-10 · max(largest_color, 1) the lower limit applies, and the error is larger
 /// than requested.
 double required_relative_error(double error, double largest_color) noexcept;
+
+/// One of presets(); it becomes a function when the data are known.
+struct PresetDescription {
+  std::string name;
+  std::optional<std::array<double, 2>> range;  ///< values of its first and last point
+};
+
+/// A transfer function as written: points with extinctions, an opacity table, a function of several
+/// channels, or a preset.
+using TransferFunctionDescription = std::variant<std::vector<TransferFunction::Point>, OpacityTable,
+                                                 MultivariateDescription, PresetDescription>;
 
 }  // namespace pellucid

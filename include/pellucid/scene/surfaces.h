@@ -6,6 +6,7 @@
 
 #include "pellucid/geometry/vec3.h"
 #include "pellucid/math/rgb.h"
+#include "pellucid/scene/opacity_table.h"
 #include "pellucid/scene/transfer_function.h"
 
 namespace pellucid {
@@ -18,8 +19,10 @@ struct Isosurface {
   Rgb<double> color{1, 1, 1};
   /// Gives the color by a variable of the layer in place of `color`; may be null.
   std::shared_ptr<const TransferFunction> colors{};
-  int channel = 0;        ///< variable that has the value, of several
-  int color_channel = 0;  ///< and the one that `colors` sees
+  ChannelRef channel{};        ///< variable that has the value, of several
+  ChannelRef color_channel{};  ///< and the one that `colors` sees
+  /// A preset or an opacity table of a file; make_scene() makes `colors` of it. May be null.
+  std::shared_ptr<const TransferFunctionDescription> written_colors{};
 
   bool operator==(const Isosurface&) const = default;
 };
@@ -32,7 +35,9 @@ struct Slice {
   double opacity = 1;            ///< in [0, 1]
   /// The color of each value; null: that of the layer's function of one variable.
   std::shared_ptr<const TransferFunction> colors{};
-  int channel = 0;  ///< variable that is shown, of several
+  ChannelRef channel{};  ///< variable that is shown, of several
+  /// A preset or an opacity table of a file; make_scene() makes `colors` of it. May be null.
+  std::shared_ptr<const TransferFunctionDescription> written_colors{};
 
   bool operator==(const Slice&) const = default;
 };

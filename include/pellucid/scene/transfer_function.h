@@ -1,11 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "pellucid/transfer/piecewise_linear.h"
 
 namespace pellucid {
+
+/// A variable of a layer, by its index or by its name. Files have names; make_scene() finds their
+/// indices, which all that renders uses. C++ code may give either.
+class ChannelRef {
+ public:
+  ChannelRef(int index = 0) noexcept : index_(index) {}                          // NOLINT: is one
+  ChannelRef(std::string name) noexcept : index_(-1), name_(std::move(name)) {}  // NOLINT: is one
+  ChannelRef(const char* name) : ChannelRef(std::string(name)) {}                // NOLINT: is one
+
+  /// Returns the index from 0; -1: that of the name is not known yet.
+  int index() const noexcept { return index_; }
+  operator int() const noexcept { return index_; }  // NOLINT: where an index is wanted
+  /// Returns the name; empty: the channel is given by its index alone.
+  const std::string& name() const noexcept { return name_; }
+  bool is_resolved() const noexcept { return index_ >= 0; }
+  /// Sets the index of a channel that has a name.
+  void resolve(int index) noexcept { index_ = index; }
+
+  /// Returns whether they are the same variable: by index, or by name where an index is missing.
+  bool operator==(const ChannelRef& other) const noexcept {
+    return is_resolved() && other.is_resolved() ? index_ == other.index_ : name_ == other.name_;
+  }
+  bool operator==(int index) const noexcept { return index_ == index; }
+  template <class Text>
+  requires std::is_convertible_v<const Text&, std::string_view>
+  bool operator==(const Text& name) const noexcept { return name_ == std::string_view(name); }
+
+ private:
+  int index_;
+  std::string name_;
+};
 
 /// A piecewise-linear transfer function of the data's physical values. It owns its points.
 class TransferFunction {

@@ -137,7 +137,7 @@ std::optional<FactorRange> factor_range(const LayerAppearance& look) {
 
 /// Returns the variable whose gradient lights a layer.
 int lit_variable(const LayerAppearance& look) {
-  return look.layer().shading ? look.layer().shading->channel : 0;
+  return look.layer().shading ? look.layer().shading->channel.index() : 0;
 }
 
 }  // namespace

@@ -43,15 +43,15 @@ bool show_own_colors(LayerDescription& layer) {
   MultivariateDescription function;
   for (int c = 0; c < 3; ++c) {
     layer.channels.push_back(component_of(field, names[c], c));
-    function.tables.push_back({names[c], primary(primaries[c], outline.largest)});
+    function.tables.push_back({names[c], TransferFunction(primary(primaries[c], outline.largest))});
   }
   FieldSource opacity = field;
   opacity.options.component_name = color_opacity;
   layer.channels.push_back({color_opacity, "", opacity});
   const bool has_alpha = outline.components == 4;
   const double densest = (has_alpha ? depth_of_alpha : depth_of_luminance) / outline.chord;
-  function.factor =
-      ChannelFactorDescription{color_opacity, {{has_alpha ? 0 : dark, 0}, {1, densest}}};
+  function.factor = {color_opacity,
+                     TransferFunction({{has_alpha ? 0 : dark, 0, {}}, {1, densest, {}}})};
   layer.transfer_function = std::move(function);
   layer.field = {};
   return true;

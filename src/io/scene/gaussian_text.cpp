@@ -39,7 +39,7 @@ class GaussianReader {
  public:
   explicit GaussianReader(std::string_view text) : text_(text) {}
 
-  GaussianDescription read() {
+  GaussianPrimitive read() {
     const std::vector<std::string_view> parts = split(text_, ';');
     read_place(parts.front());
     bool has_extinction = false, has_color = false;
@@ -107,18 +107,19 @@ class GaussianReader {
         number(trimmed(text.substr(sign + length)), "a width", scene_json::largest_value);
     if (!(width >= smallest_width)) fail("a width is not positive; it is the distance to 1/e");
     widths_.widths.push_back(width);
-    if (!name.empty()) gaussian_.channels.push_back(std::move(name));
+    if (!name.empty()) gaussian_.channels.emplace_back(std::move(name));
   }
 
   void read_place(std::string_view text) {
     for (const std::string_view part : split(text, ',')) read_axis(part);
-    const std::vector<std::string>& names = gaussian_.channels;
+    const std::vector<ChannelRef>& names = gaussian_.channels;
     if (!names.empty() && names.size() != gaussian_.center.size()) {
       fail("some centres have a channel and some have none; name all or none");
     }
     for (std::size_t i = 0; i < names.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        if (names[i] == names[j]) fail("channel \"" + printable(names[i]) + "\" stands twice");
+        if (names[i] == names[j])
+          fail("channel \"" + printable(names[i].name()) + "\" stands twice");
       }
     }
     gaussian_.shape = std::move(widths_);
@@ -148,13 +149,13 @@ class GaussianReader {
   }
 
   std::string_view text_;
-  GaussianDescription gaussian_;
+  GaussianPrimitive gaussian_;
   GaussianWidths widths_;
 };
 
 }  // namespace
 
-GaussianDescription parse_gaussian(std::string_view text) {
+GaussianPrimitive parse_gaussian(std::string_view text) {
   return GaussianReader(text).read();
 }
 

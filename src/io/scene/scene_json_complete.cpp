@@ -29,32 +29,10 @@ void complete_description(const Layer& layer, LayerDescription& description) {
   }
   if (description.look) {
     description.look.reset();
-    if (!layer.shading) {
-      description.shading.reset();
-    } else {
-      if (!description.shading) description.shading.emplace();
-      description.shading->values = *layer.shading;
-    }
-    description.isosurfaces.resize(layer.isosurfaces.size());
-    for (std::size_t i = 0; i < layer.isosurfaces.size(); ++i) {
-      const Isosurface& made = layer.isosurfaces[i];
-      description.isosurfaces[i].value = made.value;
-      description.isosurfaces[i].opacity = made.opacity;
-      description.isosurfaces[i].color = made.color;
-    }
+    description.shading = layer.shading;
   }
-  for (std::size_t i = 0; i < layer.isosurfaces.size(); ++i) {
-    const auto& made = layer.isosurfaces[i].colors;
-    if (made && is_open(description.isosurfaces[i].colors)) {
-      description.isosurfaces[i].colors = made->points();
-    }
-  }
-  for (std::size_t i = 0; i < layer.slices.size(); ++i) {
-    const auto& made = layer.slices[i].colors;
-    if (made && is_open(description.slices[i].colors)) {
-      description.slices[i].colors = made->points();
-    }
-  }
+  description.isosurfaces = layer.isosurfaces;
+  description.slices = layer.slices;
   const auto* const volume = std::get_if<VolumeContent>(&layer.content);
   if (volume == nullptr) return;
   if (is_open(description.transfer_function)) {

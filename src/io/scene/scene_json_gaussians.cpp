@@ -26,7 +26,8 @@ std::vector<std::string> channel_names(const Node& list) {
   return names;
 }
 
-GaussianShape shape(const Node& node, std::size_t channels) {
+/// Reads the matrix of a Gaussian, or what stands for it.
+void read_shape(const Node& node, std::size_t channels, GaussianPrimitive& g) {
   const auto width = node.find("width"), covariance = node.find("covariance"),
              matrix_node = node.find("matrix");
   if (width.has_value() + covariance.has_value() + matrix_node.has_value() != 1) {
@@ -34,22 +35,26 @@ GaussianShape shape(const Node& node, std::size_t channels) {
   }
   const auto axes = node.find("axes");
   if (axes && !width) axes->fail("turns a \"width\", which is not there; remove it");
-  if (matrix_node) return GaussianMatrix{matrix(*matrix_node, channels)};
-  if (covariance) return GaussianCovariance{matrix(*covariance, channels)};
+  if (matrix_node) g.matrix = matrix(*matrix_node, channels);
+  if (covariance) g.shape = GaussianCovariance{matrix(*covariance, channels)};
+  if (!width) return;
   GaussianWidths widths{numbers(*width, smallest_width), {}};
   if (widths.widths.size() != channels) {
     width->fail("must have " + std::to_string(channels) +
                 " numbers, one for each channel, but has " + std::to_string(widths.widths.size()));
   }
   if (axes) widths.axes = matrix(*axes, channels);
-  return widths;
+  g.shape = std::move(widths);
 }
 
-GaussianDescription gaussian(const Node& node, bool srgb) {
+GaussianPrimitive gaussian(const Node& node, bool srgb) {
   node.expect_object(
       {"channels", "center", "width", "axes", "covariance", "matrix", "extinction", "color"});
-  GaussianDescription g;
-  if (const auto channels = node.find("channels")) g.channels = channel_names(*channels);
+  GaussianPrimitive g;
+  if (const auto channels = node.find("channels")) {
+    const std::vector<std::string> names = channel_names(*channels);
+    g.channels.assign(names.begin(), names.end());
+  }
   const Node center = node.at("center", "give its place, a data value for each channel");
   g.center = numbers(center);
   const std::size_t n = g.center.size();
@@ -57,29 +62,33 @@ GaussianDescription gaussian(const Node& node, bool srgb) {
     center.fail("must have " + std::to_string(g.channels.size()) +
                 " numbers, one for each channel, but has " + std::to_string(n));
   }
-  g.shape = shape(node, n);
+  read_shape(node, n, g);
   g.extinction = node.at("extinction", "give the peak, per world length").number(0, largest_number);
   g.color = color_of(node.at("color", "give [r, g, b]"), srgb);
   return g;
 }
 
-ChannelTableDescription table(const Node& node, bool srgb) {
+/// Returns the channel of a table or a factor; that of an empty name if none is given.
+ChannelRef channel_of(const Node& node) {
+  const auto channel = node.find("channel");
+  return channel ? channel_name(*channel) : std::string();
+}
+
+ChannelTransferFunction table(const Node& node, bool srgb) {
   if (node.has("unit_distance")) {
     node.fail_at("unit_distance",
                  "makes an opacity table, which a sum cannot hold; remove it and give extinctions");
   }
   node.expect_object({"channel", "points"});
-  ChannelTableDescription t;
-  if (const auto channel = node.find("channel")) t.channel = channel_name(*channel);
-  t.points =
-      extinction_points(node.at("points", "give an array of {value, extinction, color}"), srgb);
-  return t;
+  ChannelRef channel = channel_of(node);
+  return {std::move(channel),
+          TransferFunction(extinction_points(
+              node.at("points", "give an array of {value, extinction, color}"), srgb))};
 }
 
-ChannelFactorDescription factor(const Node& node) {
+ChannelTransferFunction factor(const Node& node) {
   node.expect_object({"channel", "points"});
-  ChannelFactorDescription description;
-  if (const auto channel = node.find("channel")) description.channel = channel_name(*channel);
+  ChannelRef channel = channel_of(node);
   const Node list = node.at("points", "give an array of {value, factor}");
   if (list.array_size() == 0) list.fail("is empty; give at least one point {value, factor}");
   std::vector<TransferFunction::Point> points;
@@ -89,20 +98,18 @@ ChannelFactorDescription factor(const Node& node) {
     add_value(point.at("value", "give the data value of this point"), points);
     points.back().extinction =
         point.at("factor", "give the factor of the extinction").number(0, largest_number);
-    description.points.push_back({points.back().value, points.back().extinction});
   }
   // What floats hold may be narrower than what is checked here.
   try {
-    const TransferFunction checked(points);
+    return {std::move(channel), TransferFunction(std::move(points))};
   } catch (const Error& error) {
     list.fail(error.what());
   }
-  return description;
 }
 
 /// Checks the numbers, as far as the Gaussian alone can tell.
-void check(const Node& node, const GaussianDescription& description) {
-  GaussianDescription alone = description;
+void check(const Node& node, const GaussianPrimitive& gaussian) {
+  GaussianPrimitive alone = gaussian;
   alone.channels.clear();
   std::vector<std::string> channels;
   for (std::size_t i = 0; i < alone.center.size(); ++i) channels.push_back(std::to_string(i));

@@ -52,18 +52,24 @@ GradientOpacity::Point gradient_point(const Node& node) {
           node.at("factor", "give the factor of the extinction").number(0, largest_number)};
 }
 
-/// Returns the colors of a surface: a function of one variable.
-TransferFunctionDescription colors(const Node& node) {
+/// Reads the colors of a surface: a function of one variable.
+template <class Surface>
+void read_colors(const Node& node, Surface& surface) {
   TransferFunctionDescription function = transfer_function(node);
   if (std::holds_alternative<MultivariateDescription>(function)) {
     node.fail("is of several variables, but colors are of one; give \"points\" or a \"preset\"");
   }
-  return function;
+  if (const auto* points = std::get_if<std::vector<TransferFunction::Point>>(&function)) {
+    surface.colors = std::make_shared<const TransferFunction>(*points);
+  } else {
+    surface.written_colors =
+        std::make_shared<const TransferFunctionDescription>(std::move(function));
+  }
 }
 
-IsosurfaceDescription isosurface(const Node& node) {
+Isosurface isosurface(const Node& node) {
   node.expect_object({"value", "color", "opacity", "channel", "colors", "color_channel"});
-  IsosurfaceDescription surface;
+  Isosurface surface;
   surface.value =
       node.at("value", "give the data value of the surface").number(-largest_value, largest_value);
   if (const auto opacity = node.find("opacity")) surface.opacity = opacity->number(0, 1);
@@ -71,22 +77,22 @@ IsosurfaceDescription isosurface(const Node& node) {
     if (node.has("colors")) color->fail("stands beside \"colors\"; give one of the two");
     surface.color = light_color(*color);
   }
-  if (const auto function = node.find("colors")) surface.colors = colors(*function);
+  if (const auto function = node.find("colors")) read_colors(*function, surface);
   if (const auto channel = node.find("channel")) surface.channel = channel_name(*channel);
   if (const auto channel = node.find("color_channel")) {
-    if (!surface.colors) channel->fail("needs \"colors\" beside it");
+    if (!node.has("colors")) channel->fail("needs \"colors\" beside it");
     surface.color_channel = channel_name(*channel);
   }
   return surface;
 }
 
-SliceDescription slice(const Node& node) {
+Slice slice(const Node& node) {
   node.expect_object({"point", "normal", "opacity", "colors", "channel"});
-  SliceDescription slice;
+  Slice slice;
   slice.point = vector(node.at("point", "give a point [x, y, z] of the plane"));
   slice.normal = direction(node.at("normal", "give a direction [x, y, z] across the plane"));
   if (const auto opacity = node.find("opacity")) slice.opacity = opacity->number(0, 1);
-  if (const auto function = node.find("colors")) slice.colors = colors(*function);
+  if (const auto function = node.find("colors")) read_colors(*function, slice);
   if (const auto channel = node.find("channel")) slice.channel = channel_name(*channel);
   return slice;
 }
@@ -110,8 +116,9 @@ class ChannelCheck {
     }
   }
   /// Returns whether they are the same variable.
-  bool are_same(const std::string& a, const std::string& b) const {
-    return (a.empty() ? names_.front() : a) == (b.empty() ? names_.front() : b);
+  bool are_same(const ChannelRef& a, const ChannelRef& b) const {
+    const auto name = [&](const ChannelRef& c) { return c.is_resolved() ? names_[0] : c.name(); };
+    return name(a) == name(b);
   }
 
  private:
@@ -135,63 +142,63 @@ std::vector<Light> lights(const Node& list) {
   return lights;
 }
 
-ShadingDescription shading(const Node& node) {
+Shading shading(const Node& node) {
   node.expect_object({"ambient", "diffuse", "specular", "power", "gradient", "flatness",
                       "flat_gradient", "channel"});
-  ShadingDescription shading;
+  Shading shading;
   const auto read = [&](const char* key, double least, double& value) {
     if (const auto number = node.find(key)) value = number->number(least, largest_strength);
   };
-  read("ambient", 0, shading.values.ambient);
-  read("diffuse", 0, shading.values.diffuse);
-  read("specular", 0, shading.values.specular);
-  read("power", 1, shading.values.power);
+  read("ambient", 0, shading.ambient);
+  read("diffuse", 0, shading.diffuse);
+  read("specular", 0, shading.specular);
+  read("power", 1, shading.power);
   if (const auto flatness = node.find("flatness")) {
-    shading.values.flatness = flatness->number(0, largest_strength);
+    shading.flatness = flatness->number(0, largest_strength);
   }
   if (const auto gradient = node.find("flat_gradient")) {
-    if (shading.values.flatness) {
+    if (shading.flatness) {
       gradient->fail("stands beside a \"flatness\"; leave one of the two out");
     }
-    shading.values.flat_gradient = gradient->number(0, 1e38);
+    shading.flat_gradient = gradient->number(0, 1e38);
   }
   if (const auto gradient = node.find("gradient")) {
-    shading.values.gradient = std::array{
-        GradientKind::smooth, GradientKind::field}[gradient->one_of({"smooth", "field"})];
+    shading.gradient = std::array{GradientKind::smooth,
+                                  GradientKind::field}[gradient->one_of({"smooth", "field"})];
   }
   if (const auto channel = node.find("channel")) shading.channel = channel_name(*channel);
   return shading;
 }
 
-GradientOpacityDescription gradient_opacity(const Node& node) {
+std::shared_ptr<const GradientOpacity> gradient_opacity(const Node& node) {
   node.expect_object({"points", "unit", "channel"});
-  GradientOpacityDescription description;
   const Node list = node.at("points", "give an array of {gradient, factor}");
   if (list.array_size() == 0) list.fail("is empty; give at least one point {gradient, factor}");
+  std::vector<GradientOpacity::Point> points;
   for (std::size_t i = 0; i < list.array_size(); ++i) {
     const Node point = list.element(i);
-    description.points.push_back(gradient_point(point));
-    const auto gradient = [&](std::size_t k) { return description.points[k].gradient; };
+    points.push_back(gradient_point(point));
     const Node where = *point.find("gradient");
-    if (i >= 1 && gradient(i) < gradient(i - 1)) {
+    if (i >= 1 && points[i].gradient < points[i - 1].gradient) {
       where.fail("is below the gradient of the point before it; points must ascend");
     }
-    if (i >= 2 && gradient(i) == gradient(i - 2)) {
+    if (i >= 2 && points[i].gradient == points[i - 2].gradient) {
       where.fail("is the third equal gradient; two make a jump, remove the middle one");
     }
   }
+  GradientOpacity::Unit length = GradientOpacity::Unit::world;
   if (const auto unit = node.find("unit")) {
-    description.unit = std::array{GradientOpacity::Unit::world,
-                                  GradientOpacity::Unit::voxel}[unit->one_of({"world", "voxel"})];
+    length = std::array{GradientOpacity::Unit::world,
+                        GradientOpacity::Unit::voxel}[unit->one_of({"world", "voxel"})];
   }
-  if (const auto channel = node.find("channel")) description.channel = channel_name(*channel);
+  ChannelRef variable;
+  if (const auto channel = node.find("channel")) variable = channel_name(*channel);
   // What floats hold may be narrower than what is checked here.
   try {
-    const GradientOpacity checked(description.points);
+    return std::make_shared<const GradientOpacity>(std::move(points), length, std::move(variable));
   } catch (const Error& error) {
     list.fail(error.what());
   }
-  return description;
 }
 
 void read_look(const Node& node, LayerDescription& layer) {
@@ -215,9 +222,9 @@ void read_look(const Node& node, LayerDescription& layer) {
   if (const auto list = node.find("isosurfaces")) {
     for (std::size_t i = 0; i < list->array_size(); ++i) {
       const Node element = list->element(i);
-      IsosurfaceDescription surface = isosurface(element);
+      Isosurface surface = isosurface(element);
       check(element);
-      for (const IsosurfaceDescription& other : layer.isosurfaces) {
+      for (const Isosurface& other : layer.isosurfaces) {
         if (other.value != surface.value || !check.are_same(other.channel, surface.channel))
           continue;
         element.find("value")->fail("stands twice; keep one of the two isosurfaces");

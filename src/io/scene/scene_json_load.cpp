@@ -22,7 +22,7 @@ constexpr std::array made_of_field{DerivedSource::Kind::gradient_magnitude,
                                    DerivedSource::Kind::second_derivative};
 
 bool names(const MultivariateDescription& function, std::string_view channel) {
-  const auto in = [&](const std::vector<std::string>& list) {
+  const auto in = [&](const auto& list) {
     return std::find(list.begin(), list.end(), channel) != list.end();
   };
   return in(function.channels) ||
@@ -69,7 +69,9 @@ TransferFunction medium_function(const LayerDescription& description, const Want
   if (description.transfer_function || !description.shows_surfaces()) {
     return function_of(description.transfer_function, wanted, data, description.projection);
   }
-  const auto has_no_colors = [](const SliceDescription& slice) { return !slice.colors; };
+  const auto has_no_colors = [](const Slice& slice) {
+    return !slice.colors && !slice.written_colors;
+  };
   if (std::ranges::any_of(description.slices, has_no_colors)) return grey_colors(data);
   return TransferFunction({{0, 0, {0, 0, 0}}});
 }
@@ -238,81 +240,108 @@ LabelContent load_label_content(const LabelSource& source, const Layer* loaded) 
   return content;
 }
 
-/// Returns the colors of a surface: a function of one variable, whose extinctions do not count.
-/// `description` none: grey over the range of the data.
+/// Returns the colors of a surface as written, which are a preset or an opacity table.
 template <class Data>
-std::shared_ptr<const TransferFunction> surface_colors(
-    const std::optional<TransferFunctionDescription>& description, const Data& data) {
-  if (!description) return std::make_shared<const TransferFunction>(grey_colors(data));
-  const auto* const table = std::get_if<OpacityTable>(&*description);
-  if (table == nullptr) {
-    return std::make_shared<const TransferFunction>(function_of(description, Wanted{}, data));
-  }
+TransferFunction made_colors(const TransferFunctionDescription& written, const Data& data) {
+  const auto* const table = std::get_if<OpacityTable>(&written);
+  if (table == nullptr) return function_of(written, Wanted{}, data);
   std::vector<TransferFunction::Point> points;
   for (const OpacityPoint& point : table->points) points.push_back({point.value, 0, point.color});
-  return std::make_shared<const TransferFunction>(std::move(points), 0.0, table->color_deviation);
+  return {std::move(points), 0.0, table->color_deviation};
 }
 
-/// Puts shading, gradient opacity, isosurfaces and slices into a layer that has its data.
+/// Calls visit(channel, what) with each channel that a layer's light and surfaces look at. It may
+/// change them; `what` names the place in messages.
+template <class Visit>
+void visit_channels(Layer& layer, const Visit& visit) {
+  if (layer.shading) visit(layer.shading->channel, "shading");
+  if (const GradientOpacity* const opacity = layer.gradient_opacity.get()) {
+    ChannelRef channel = opacity->channel();
+    visit(channel, "gradient opacity");
+    if (channel.index() != opacity->channel().index() ||
+        channel.name() != opacity->channel().name()) {
+      layer.gradient_opacity = std::make_shared<const GradientOpacity>(
+          opacity->points(), opacity->unit(), std::move(channel));
+    }
+  }
+  for (Isosurface& surface : layer.isosurfaces) {
+    visit(surface.channel, "an isosurface");
+    visit(surface.color_channel, "an isosurface");
+  }
+  for (Slice& slice : layer.slices) visit(slice.channel, "a slice");
+}
+
+void check_index(int index, const char* what, const std::vector<std::string>& names) {
+  if (index >= 0 && index < static_cast<int>(names.size())) return;
+  throw Error(std::string("scene: ") + what + " looks at channel " + std::to_string(index) +
+              ", but there are " + std::to_string(names.size()) + ", counted from 0");
+}
+
+/// Finds the channels of the light and the surfaces of a layer that has its data, and makes the
+/// colors of its surfaces.
 class LookLoader {
  public:
   LookLoader(const LayerDescription& description, Layer& layer)
-      : description_(description), layer_(layer), names_(function_channels(description)) {
+      : layer_(layer), names_(function_channels(description)) {
     if (names_.empty()) names_.emplace_back(field_channel);
   }
 
   void operator()() const {
-    if (description_.shading) {
-      layer_.shading = description_.shading->values;
-      layer_.shading->channel = index(description_.shading->channel, "shading");
-    }
-    if (const auto& opacity = description_.gradient_opacity) {
-      layer_.gradient_opacity = std::make_shared<const GradientOpacity>(
-          opacity->points, opacity->unit, index(opacity->channel, "gradient opacity"));
-    }
-    for (const IsosurfaceDescription& surface : description_.isosurfaces) {
-      const int color_channel = index(surface.color_channel, "an isosurface");
-      layer_.isosurfaces.push_back(
-          {surface.value, surface.opacity, surface.color,
-           surface.colors ? colors(surface.colors, color_channel) : nullptr,
-           index(surface.channel, "an isosurface"), color_channel});
-    }
-    for (const SliceDescription& slice : description_.slices) {
-      const int channel = index(slice.channel, "a slice");
-      const bool own = slice.colors || !std::holds_alternative<VolumeContent>(layer_.content);
-      layer_.slices.push_back({slice.point, slice.normal, slice.opacity,
-                               own ? colors(slice.colors, channel) : nullptr, channel});
+    visit_channels(layer_, [&](ChannelRef& channel, const char* what) { resolve(channel, what); });
+    for (Isosurface& surface : layer_.isosurfaces) make_colors(surface, surface.color_channel);
+    const bool is_field = std::holds_alternative<VolumeContent>(layer_.content);
+    for (Slice& slice : layer_.slices) {
+      make_colors(slice, slice.channel);
+      if (!slice.colors && !is_field) slice.colors = grey(slice.channel);
     }
   }
 
  private:
-  int index(const std::string& channel, const char* what) const {
-    if (channel.empty()) return 0;
-    const auto found = std::ranges::find(names_, channel);
-    if (found != names_.end()) return static_cast<int>(found - names_.begin());
+  void resolve(ChannelRef& channel, const char* what) const {
+    if (channel.name().empty()) return check_index(channel, what, names_);
+    const auto found = std::ranges::find(names_, channel.name());
+    if (found != names_.end()) return channel.resolve(static_cast<int>(found - names_.begin()));
     std::string list;
     for (const std::string& name : names_) list += (list.empty() ? "" : ", ") + name;
-    throw Error(std::string("scene: ") + what + " looks at a channel \"" + channel +
+    throw Error(std::string("scene: ") + what + " looks at a channel \"" + channel.name() +
                 "\", which is not there; there are: " + list);
   }
 
+  template <class Surface>
+  void make_colors(Surface& surface, int channel) const {
+    if (!surface.written_colors) return;
+    surface.colors = of_data(
+        channel, [&](const auto& data) { return made_colors(*surface.written_colors, data); });
+    // A preset is made for good; the tolerance of a table may change.
+    if (!std::holds_alternative<OpacityTable>(*surface.written_colors)) {
+      surface.written_colors.reset();
+    }
+  }
   /// Null for a slice of a mesh with a function of one variable, which has that function's.
-  std::shared_ptr<const TransferFunction> colors(
-      const std::optional<TransferFunctionDescription>& description, int channel) const {
-    if (const auto* volume = std::get_if<VolumeContent>(&layer_.content)) {
-      return surface_colors(description, *volume->volume);
-    }
-    if (const auto* channels = std::get_if<ChannelsContent>(&layer_.content)) {
-      return surface_colors(description, *(*channels->channels)[channel].volume);
-    }
+  std::shared_ptr<const TransferFunction> grey(int channel) const {
     const auto* const mesh = std::get_if<MeshContent>(&layer_.content);
-    if (mesh == nullptr || (!description && mesh->univariate() != nullptr)) return nullptr;
-    return surface_colors(description, channel == 0 ? *mesh->mesh
-                                                    : MeshChannels(mesh->mesh->shared_mesh(),
-                                                                   {(*mesh->mesh)[channel]}));
+    if (mesh != nullptr && mesh->univariate() != nullptr) return nullptr;
+    return of_data(channel, [](const auto& data) { return grey_colors(data); });
   }
 
-  const LayerDescription& description_;
+  /// Returns what `make` makes of a channel; null for labels.
+  template <class Make>
+  std::shared_ptr<const TransferFunction> of_data(int channel, const Make& make) const {
+    const auto made = [&](const auto& data) {
+      return std::make_shared<const TransferFunction>(make(data));
+    };
+    if (const auto* volume = std::get_if<VolumeContent>(&layer_.content)) {
+      return made(*volume->volume);
+    }
+    if (const auto* channels = std::get_if<ChannelsContent>(&layer_.content)) {
+      return made(*(*channels->channels)[channel].volume);
+    }
+    const auto* const mesh = std::get_if<MeshContent>(&layer_.content);
+    if (mesh == nullptr) return nullptr;
+    return made(channel == 0 ? *mesh->mesh
+                             : MeshChannels(mesh->mesh->shared_mesh(), {(*mesh->mesh)[channel]}));
+  }
+
   Layer& layer_;
   std::vector<std::string> names_;
 };
@@ -336,12 +365,7 @@ void put(Look look, const WantedLook& wanted, Layer& layer) {
 /// Takes the data of `loaded` unless it is null.
 Layer load_layer(const LayerDescription& description, const Wanted& wanted, const Layer* loaded,
                  const ParallelFor& parallel, MeshSource& mesh_used) {
-  Layer layer;
-  layer.name = description.name;
-  layer.visible = description.visible;
-  layer.transform = description.transform;
-  layer.clips = description.clips;
-  layer.projection = description.projection;
+  Layer layer = static_cast<const Layer&>(description);
   std::optional<Look> look;
   if (description.labels) {
     layer.content = load_label_content(*description.labels, loaded);
@@ -385,6 +409,18 @@ std::vector<std::string> known_channels(const LayerDescription& description) {
   std::vector<std::string> names{std::string(field_channel)};
   for (const auto kind : made_of_field) names.emplace_back(derived_name(kind));
   return names;
+}
+
+void name_channels(LayerDescription& layer) {
+  std::vector<std::string> names;
+  visit_channels(layer, [&](ChannelRef& channel, const char* what) {
+    if (!channel.name().empty() || channel.index() == 0) return;
+    if (names.empty()) names = function_channels(layer);
+    const int index = channel.index();
+    check_index(index, what, names);
+    channel = names[static_cast<std::size_t>(index)];
+    channel.resolve(index);
+  });
 }
 
 Scene make_scene(const SceneDescription& description, const ParallelFor& parallel,

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -63,8 +64,8 @@ MultivariateDescription multivariate(const Node& function);
 
 std::vector<Light> lights(const Node& list);
 /// The names of channels that these use are not looked up.
-ShadingDescription shading(const Node& node);
-GradientOpacityDescription gradient_opacity(const Node& node);
+Shading shading(const Node& node);
+std::shared_ptr<const GradientOpacity> gradient_opacity(const Node& node);
 /// Shading, gradient opacity, isosurfaces and slices of a layer that has all its other members.
 void read_look(const Node& node, LayerDescription& layer);
 

@@ -130,54 +130,58 @@ std::string list(const std::vector<std::vector<double>>& rows, std::string_view 
   return text + "]";
 }
 
-std::string list(const std::vector<std::string>& names) {
+std::string name_text(const ChannelRef& channel) {
+  return quoted(channel.name(), "the name of a channel");
+}
+
+std::string names_text(const std::vector<ChannelRef>& names) {
   std::string text;
-  for (const std::string& name : names) {
-    text += joined({text.empty() ? "[" : ", ", quoted(name, "the name of a channel")});
+  for (const ChannelRef& name : names) {
+    text += joined({text.empty() ? "[" : ", ", name_text(name)});
   }
   return text + "]";
 }
 
-std::string shape_text(const GaussianShape& shape) {
-  if (const auto* widths = std::get_if<GaussianWidths>(&shape)) {
+void add_channel(std::string_view key, const ChannelRef& channel, Members& members) {
+  if (!channel.name().empty()) members.add(key, name_text(channel));
+}
+
+std::string shape_text(const GaussianPrimitive& g) {
+  if (!g.shape) return joined({"\"matrix\": ", list(g.matrix, "a matrix")});
+  if (const auto* widths = std::get_if<GaussianWidths>(&*g.shape)) {
     std::string text = joined({"\"width\": ", list(widths->widths, "a width")});
     if (!widths->axes.empty()) text += joined({", \"axes\": ", list(widths->axes, "an axis")});
     return text;
   }
-  if (const auto* covariance = std::get_if<GaussianCovariance>(&shape)) {
-    return joined({"\"covariance\": ", list(covariance->covariance, "a covariance")});
-  }
-  return joined({"\"matrix\": ", list(std::get<GaussianMatrix>(shape).matrix, "a matrix")});
+  return joined({"\"covariance\": ",
+                 list(std::get<GaussianCovariance>(*g.shape).covariance, "a covariance")});
 }
 
-std::string gaussian_text(const GaussianDescription& g) {
-  return joined({"{", g.channels.empty() ? "" : joined({"\"channels\": ", list(g.channels), ", "}),
-                 "\"center\": ", list(g.center, "a center"), ", ", shape_text(g.shape),
+std::string gaussian_text(const GaussianPrimitive& g) {
+  return joined({"{",
+                 g.channels.empty() ? "" : joined({"\"channels\": ", names_text(g.channels), ", "}),
+                 "\"center\": ", list(g.center, "a center"), ", ", shape_text(g),
                  ", \"extinction\": ", number(g.extinction, "an extinction"),
                  ", \"color\": ", array(g.color, "a color"), "}"});
 }
 
-std::string table_text(const ChannelTableDescription& table, const std::string& indent) {
+std::string table_text(const ChannelTransferFunction& table, const std::string& indent) {
   Members members(indent);
-  if (!table.channel.empty()) {
-    members.add("channel", quoted(table.channel, "the name of a channel"));
-  }
-  members.add("points", points_text(table.points, &TransferFunction::Point::extinction,
+  add_channel("channel", table.channel, members);
+  members.add("points", points_text(table.function.points(), &TransferFunction::Point::extinction,
                                     "extinction", indent));
   return members.object();
 }
 
 /// One point per line.
-std::string factor_text(const ChannelFactorDescription& factor, const std::string& indent) {
+std::string factor_text(const ChannelTransferFunction& factor, const std::string& indent) {
   Members members(indent);
-  if (!factor.channel.empty()) {
-    members.add("channel", quoted(factor.channel, "the name of a channel"));
-  }
+  add_channel("channel", factor.channel, members);
   std::string list;
-  for (const ChannelFactorDescription::Point& point : factor.points) {
+  for (const TransferFunction::Point& point : factor.function.points()) {
     list += joined({list.empty() ? "[" : ",", "\n", indent,
                     "    {\"value\": ", number(point.value, "a value"),
-                    ", \"factor\": ", number(point.factor, "a factor"), "}"});
+                    ", \"factor\": ", number(point.extinction, "a factor"), "}"});
   }
   members.add("points", joined({list, "\n", indent, "  ]"}));
   return members.object();
@@ -187,17 +191,18 @@ std::string factor_text(const ChannelFactorDescription& factor, const std::strin
 std::string transfer_function_text(const MultivariateDescription& function,
                                    const std::string& indent) {
   Members members(indent);
-  if (!function.channels.empty()) members.add("channels", list(function.channels));
+  if (!function.channels.empty())
+    members.add("channels", names_text({function.channels.begin(), function.channels.end()}));
   if (!function.gaussians.empty()) {
     std::string text;
-    for (const GaussianDescription& g : function.gaussians) {
+    for (const GaussianPrimitive& g : function.gaussians) {
       text += joined({text.empty() ? "[" : ",", "\n", indent, "    ", gaussian_text(g)});
     }
     members.add("gaussians", joined({text, "\n", indent, "  ]"}));
   }
   if (!function.tables.empty()) {
     std::string text;
-    for (const ChannelTableDescription& table : function.tables) {
+    for (const ChannelTransferFunction& table : function.tables) {
       text += joined({text.empty() ? "[" : ", ", table_text(table, indent + "  ")});
     }
     members.add("tables", text + "]");
@@ -422,49 +427,54 @@ std::string lights_text(const std::vector<Light>& lights) {
   return list.empty() ? "[]" : list + "\n  ]";
 }
 
-void add_channel(std::string_view key, const std::string& channel, Members& members) {
-  if (!channel.empty()) members.add(key, quoted(channel, "the name of a channel"));
-}
-
-std::string shading_text(const ShadingDescription& shading, const std::string& indent) {
-  const Shading& values = shading.values;
+std::string shading_text(const Shading& shading, const std::string& indent) {
   Members members(indent);
-  members.add("ambient", number(values.ambient, "a part of the shading"));
-  members.add("diffuse", number(values.diffuse, "a part of the shading"));
-  members.add("specular", number(values.specular, "a part of the shading"));
-  members.add("power", number(values.power, "the power of the shading"));
-  members.add("gradient", joined({"\"", gradient_kind_name(values.gradient), "\""}));
-  if (values.flatness) {
-    members.add("flatness", number(*values.flatness, "the flatness of the shading"));
+  members.add("ambient", number(shading.ambient, "a part of the shading"));
+  members.add("diffuse", number(shading.diffuse, "a part of the shading"));
+  members.add("specular", number(shading.specular, "a part of the shading"));
+  members.add("power", number(shading.power, "the power of the shading"));
+  members.add("gradient", joined({"\"", gradient_kind_name(shading.gradient), "\""}));
+  if (shading.flatness) {
+    members.add("flatness", number(*shading.flatness, "the flatness of the shading"));
   }
-  if (values.flat_gradient) {
-    members.add("flat_gradient", number(*values.flat_gradient, "the flat gradient of the shading"));
+  if (shading.flat_gradient) {
+    members.add("flat_gradient",
+                number(*shading.flat_gradient, "the flat gradient of the shading"));
   }
   add_channel("channel", shading.channel, members);
   return members.object();
 }
 
+/// Adds the colors of a surface as they are written. Returns whether it has some.
+template <class Surface>
+bool add_colors(const Surface& surface, const std::string& indent, Members& members) {
+  if (surface.written_colors) {
+    members.add("colors", transfer_function_text(*surface.written_colors, indent + "  "));
+  } else if (surface.colors) {
+    members.add("colors", transfer_function_text(surface.colors->points(), indent + "  "));
+  }
+  return surface.written_colors || surface.colors;
+}
+
 /// One point per line.
-std::string gradient_opacity_text(const GradientOpacityDescription& opacity,
-                                  const std::string& indent) {
+std::string gradient_opacity_text(const GradientOpacity& opacity, const std::string& indent) {
   Members members(indent);
   std::string list;
-  for (const GradientOpacity::Point& point : opacity.points) {
+  for (const GradientOpacity::Point& point : opacity.points()) {
     list += joined({list.empty() ? "[" : ",", "\n", indent,
                     "    {\"gradient\": ", number(point.gradient, "a gradient"),
                     ", \"factor\": ", number(point.factor, "a factor"), "}"});
   }
   members.add("points", joined({list, "\n", indent, "  ]"}));
-  members.add("unit", opacity.unit == GradientOpacity::Unit::voxel ? "\"voxel\"" : "\"world\"");
-  add_channel("channel", opacity.channel, members);
+  members.add("unit", opacity.unit() == GradientOpacity::Unit::voxel ? "\"voxel\"" : "\"world\"");
+  add_channel("channel", opacity.channel(), members);
   return members.object();
 }
 
-std::string isosurface_text(const IsosurfaceDescription& surface, const std::string& indent) {
+std::string isosurface_text(const Isosurface& surface, const std::string& indent) {
   Members members(indent);
   members.add("value", number(surface.value, "the value of an isosurface"));
-  if (surface.colors) {
-    members.add("colors", transfer_function_text(*surface.colors, indent + "  "));
+  if (add_colors(surface, indent, members)) {
     add_channel("color_channel", surface.color_channel, members);
   } else {
     members.add("color", array(surface.color, "the color of an isosurface"));
@@ -474,18 +484,19 @@ std::string isosurface_text(const IsosurfaceDescription& surface, const std::str
   return members.object();
 }
 
-std::string slice_text(const SliceDescription& slice, const std::string& indent) {
+std::string slice_text(const Slice& slice, const std::string& indent) {
   Members members(indent);
   members.add("point", array(slice.point, "the point of a slice"));
   members.add("normal", array(slice.normal, "the normal of a slice"));
   members.add("opacity", number(slice.opacity, "the opacity of a slice"));
-  if (slice.colors) members.add("colors", transfer_function_text(*slice.colors, indent + "  "));
+  add_colors(slice, indent, members);
   add_channel("channel", slice.channel, members);
   return members.object();
 }
 
 /// `indent` is that of the keys.
-void add_look(const LayerDescription& layer, const std::string& indent, Members& members) {
+void add_look(LayerDescription layer, const std::string& indent, Members& members) {
+  name_channels(layer);
   if (layer.shading) members.add("shading", shading_text(*layer.shading, indent));
   if (layer.gradient_opacity) {
     members.add("gradient_opacity", gradient_opacity_text(*layer.gradient_opacity, indent));
@@ -526,9 +537,7 @@ std::string layer_text(const LayerDescription& layer) {
     members.add("transfer_function", transfer_function_text(*layer.transfer_function, indent));
   }
   if (layer.mask) members.add("mask", mask_text(*layer.mask, indent));
-  Layer place;
-  place.transform = layer.transform;
-  if (!is_in_place(place)) members.add("transform", transform_text(layer.transform));
+  if (!is_in_place(layer)) members.add("transform", transform_text(layer.transform));
   if (!layer.clips.empty()) members.add("clip", clips_text(layer.clips, "    "));
   if (layer.projection) {
     members.add("projection", joined({"\"", projection_name(*layer.projection), "\""}));

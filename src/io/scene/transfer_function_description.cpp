@@ -27,11 +27,23 @@ class ChannelIndex {
                 "\", which is not there" + did_you_mean(name, {known_.begin(), known_.end()}) +
                 "; there are: " + list);
   }
-  std::vector<int> of(const std::vector<std::string>& names, const std::string& term) const {
-    std::vector<int> list;
-    list.reserve(names.size());
-    for (const std::string& name : names) list.push_back(of(name, term));
-    return list;
+  /// Finds the indices of channels that have names.
+  void resolve(std::vector<ChannelRef>& channels, const std::string& term) const {
+    for (ChannelRef& channel : channels) {
+      if (!channel.name().empty()) channel.resolve(of(channel.name(), term));
+    }
+  }
+  /// Finds the index of the channel of a function of one, which may be the only channel.
+  void resolve(ChannelTransferFunction& table, const std::string& term) const {
+    if (!table.channel.name().empty()) {
+      table.channel.resolve(of(table.channel.name(), term));
+    } else if (!table.channel.is_resolved()) {
+      if (channels_.size() != 1) {
+        throw Error("transfer function: " + term + " does not say at which channel it looks, but " +
+                    "there are " + std::to_string(channels_.size()) + "; give its \"channel\"");
+      }
+      table.channel.resolve(0);
+    }
   }
 
  private:
@@ -41,15 +53,13 @@ class ChannelIndex {
 
 }  // namespace
 
-std::vector<std::vector<double>> gaussian_matrix(const GaussianShape& shape) {
-  if (const auto* widths = std::get_if<GaussianWidths>(&shape)) {
+std::vector<std::vector<double>> gaussian_matrix(const GaussianPrimitive& gaussian) {
+  if (!gaussian.shape) return gaussian.matrix;
+  if (const auto* widths = std::get_if<GaussianWidths>(&*gaussian.shape)) {
     return widths->axes.empty() ? matrix_from_widths(widths->widths)
                                 : matrix_from_widths(widths->widths, widths->axes);
   }
-  if (const auto* covariance = std::get_if<GaussianCovariance>(&shape)) {
-    return matrix_from_covariance(covariance->covariance);
-  }
-  return std::get<GaussianMatrix>(shape).matrix;
+  return matrix_from_covariance(std::get<GaussianCovariance>(*gaussian.shape).covariance);
 }
 
 TransferFunction make_transfer_function(const TransferFunctionDescription& description,
@@ -88,33 +98,19 @@ std::shared_ptr<const MultivariateTransferFunction> make_multivariate(
   const ChannelIndex index(channels, known.empty() ? channels : known);
   const std::vector<std::string>& common =
       description.channels.empty() ? channels : description.channels;
-  std::vector<GaussianPrimitive> primitives;
-  for (const GaussianDescription& g : description.gaussians) {
-    const std::string term = "Gaussian " + std::to_string(primitives.size());
-    primitives.push_back({index.of(g.channels.empty() ? common : g.channels, term), g.center,
-                          gaussian_matrix(g.shape), g.extinction, g.color});
+  std::vector<GaussianPrimitive> primitives = description.gaussians;
+  for (std::size_t i = 0; i < primitives.size(); ++i) {
+    GaussianPrimitive& g = primitives[i];
+    if (g.channels.empty()) g.channels.assign(common.begin(), common.end());
+    index.resolve(g.channels, "Gaussian " + std::to_string(i));
+    g.matrix = gaussian_matrix(g);
   }
-  const auto channel_of = [&](const std::string& name, const std::string& term) {
-    if (name.empty() && channels.size() != 1) {
-      throw Error("transfer function: " + term + " does not say at which channel it looks, but " +
-                  "there are " + std::to_string(channels.size()) + "; give its \"channel\"");
-    }
-    return name.empty() ? 0 : index.of(name, term);
-  };
-  std::vector<ChannelTransferFunction> tables;
-  for (const ChannelTableDescription& table : description.tables) {
-    const std::string term = "table " + std::to_string(tables.size());
-    tables.push_back({channel_of(table.channel, term), TransferFunction(table.points)});
+  std::vector<ChannelTransferFunction> tables = description.tables;
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    index.resolve(tables[i], "table " + std::to_string(i));
   }
-  std::optional<ChannelTransferFunction> factor;
-  if (description.factor) {
-    std::vector<TransferFunction::Point> points;
-    for (const ChannelFactorDescription::Point& point : description.factor->points) {
-      points.push_back({point.value, point.factor, {}});
-    }
-    factor = {channel_of(description.factor->channel, "its factor"),
-              TransferFunction(std::move(points))};
-  }
+  std::optional<ChannelTransferFunction> factor = description.factor;
+  if (factor) index.resolve(*factor, "its factor");
   return std::make_shared<const MultivariateTransferFunction>(static_cast<int>(channels.size()),
                                                               std::move(primitives),
                                                               std::move(tables), std::move(factor));

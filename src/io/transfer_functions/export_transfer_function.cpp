@@ -197,17 +197,17 @@ HeldLight held_light(const LookDescription& look, const ExportOptions& options,
   HeldLight light;
   const bool slicer = options.format == ExportFormat::slicer;
   if (look.shading) {
-    if (slicer) light.shading = &look.shading->values;
+    if (slicer) light.shading = &*look.shading;
     notes.emplace_back(slicer ? "shading: exact, but for flatness and the kind of gradient, which "
                                 "are left out"
                               : "the shading is left out: the file cannot say it");
   }
   if (!look.gradient_opacity) return light;
-  const GradientOpacityDescription& opacity = *look.gradient_opacity;
+  const GradientOpacity& opacity = *look.gradient_opacity;
   const auto is_above = [](const GradientOpacity::Point& p) { return p.factor > 1; };
-  const bool above = std::ranges::any_of(opacity.points, is_above);
-  const bool world = opacity.unit == GradientOpacity::Unit::world;
-  if (slicer && !above && !world) light.gradient_opacity = &opacity.points;
+  const bool above = std::ranges::any_of(opacity.points(), is_above);
+  const bool world = opacity.unit() == GradientOpacity::Unit::world;
+  if (slicer && !above && !world) light.gradient_opacity = &opacity.points();
   notes.emplace_back(
       !slicer ? "the gradient opacity is left out: the file cannot say it"
       : world ? "the gradient opacity is left out: it is per world length, the file's per voxel"

@@ -64,7 +64,7 @@ struct Function {
   /// Largest numbers, above which they are cut, if numbers of nodes are not from 0 to 1.
   double largest_color = 1, largest_opacity = 1;
   double unit_distance = 1;
-  std::optional<ShadingDescription> shading;
+  std::optional<Shading> shading;
   std::vector<OpacityNode> gradient_opacity;  ///< by the gradient per mean spacing; empty: 1
   std::vector<std::string> notes;             ///< what was left out or supposed
 };

@@ -83,8 +83,7 @@ void set_gradient_opacity(std::vector<OpacityNode> nodes, Function& function) {
 }
 
 void set_shading(const Shading& shading, Function& function) {
-  function.shading.emplace().values = shading;
-  double& power = function.shading->values.power;
+  double& power = function.shading.emplace(shading).power;
   const double given = power;
   power = std::clamp(power, 1.0, 1e3);
   if (power != given) {
@@ -96,7 +95,7 @@ void set_shading(const Shading& shading, Function& function) {
 void fit_light(const Function& function, ImportedTransferFunction& imported) {
   imported.shading = function.shading;
   if (function.shading) {
-    const Shading& s = function.shading->values;
+    const Shading& s = *function.shading;
     imported.notes.push_back("shading: ambient " + text_of(s.ambient) + ", diffuse " +
                              text_of(s.diffuse) + ", specular " + text_of(s.specular) +
                              " with power " + text_of(s.power));
@@ -116,11 +115,9 @@ void fit_light(const Function& function, ImportedTransferFunction& imported) {
     if (nodes[i + 1].x == nodes[i].x) continue;
     deviation = std::max(deviation, append_way(nodes[i], nodes[i + 1], points));
   }
-  GradientOpacityDescription& opacity = imported.gradient_opacity.emplace();
-  opacity.points = tidied(points);
-  opacity.unit = GradientOpacity::Unit::voxel;
   try {
-    const GradientOpacity checked(opacity.points, opacity.unit);
+    imported.gradient_opacity =
+        std::make_shared<const GradientOpacity>(tidied(points), GradientOpacity::Unit::voxel);
   } catch (const Error& error) {
     throw Error(function.format + ": " + error.what());
   }

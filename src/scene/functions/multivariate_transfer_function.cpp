@@ -67,7 +67,8 @@ class GaussianCheck {
   void check_channels() const {
     if (primitive_.channels.empty()) refuse("it looks at no channel; name one at least");
     std::vector<bool> seen(static_cast<std::size_t>(channels_));
-    for (const int c : primitive_.channels) {
+    for (const ChannelRef& channel : primitive_.channels) {
+      const int c = channel.index();
       if (c < 0 || c >= channels_) {
         refuse("it looks at channel " + std::to_string(c) + ", but there are " +
                std::to_string(channels_) + ", counted from 0");

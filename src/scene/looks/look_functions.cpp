@@ -35,7 +35,7 @@ class Palette {
 
 constexpr std::string_view viridis = "viridis", inferno = "inferno", cool_to_warm = "cool to warm";
 
-constexpr Shading soft_light{0.25, 0.8, 0.2, 25}, surface_light{0.3, 0.8, 0.3, 30};
+const Shading soft_light{0.25, 0.8, 0.2, 25}, surface_light{0.3, 0.8, 0.3, 30};
 
 Depths depths(const LookedAt& data) {
   return {data.values.values.size(), data.chord, data.filled};

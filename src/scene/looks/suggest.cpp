@@ -128,10 +128,11 @@ class Boundaries {
   GaussianPrimitive primitive(const std::vector<int>& which, std::array<double, 2> center,
                               std::array<double, 2> widths) const {
     const HistogramAxis &v = h_.axes[0], &g = h_.axes[1];
-    return {which,
+    return {{which.begin(), which.end()},
             {value_at(v, center[0]), value_at(g, center[1])},
             of_values(matrix_from_widths({widths[0], widths[1]}), h_.axes),
             0,
+            {},
             {}};
   }
   double small_gradients() const { return static_cast<double>(small_); }
@@ -151,7 +152,7 @@ class Boundaries {
 GaussianPrimitive primitive_of(const NormalComponent& component, const std::vector<int>& which,
                                const std::vector<HistogramAxis>& axes) {
   GaussianPrimitive primitive;
-  primitive.channels = which;
+  primitive.channels.assign(which.begin(), which.end());
   // Whole covariances overlap so much that the colors of neighbours mix everywhere.
   constexpr double kept = 0.5;
   std::vector<std::vector<double>> covariance = component.covariance;

@@ -13,8 +13,8 @@ namespace {
 using Names = std::vector<std::string>;
 using Numbers = std::vector<double>;
 
-const Numbers& widths(const GaussianDescription& g) {
-  return std::get<GaussianWidths>(g.shape).widths;
+const Numbers& widths(const GaussianPrimitive& g) {
+  return std::get<GaussianWidths>(*g.shape).widths;
 }
 
 void expect_refused(const char* text, std::initializer_list<const char*> parts) {
@@ -22,12 +22,12 @@ void expect_refused(const char* text, std::initializer_list<const char*> parts) 
 }
 
 TEST(GaussianText, IsReadWholly) {
-  const GaussianDescription g =
+  const GaussianPrimitive g =
       parse_gaussian("t1=80~10, edge=-2e1~0.5; extinction 0.25; color 1,0.5,0");
-  EXPECT_EQ(g.channels, (Names{"t1", "edge"}));
+  EXPECT_EQ(g.channels, (std::vector<ChannelRef>{"t1", "edge"}));
   EXPECT_EQ(g.center, (Numbers{80, -20}));
   EXPECT_EQ(widths(g), (Numbers{10, 0.5}));
-  EXPECT_TRUE(std::get<GaussianWidths>(g.shape).axes.empty());
+  EXPECT_TRUE(std::get<GaussianWidths>(*g.shape).axes.empty());
   EXPECT_EQ(g.extinction, 0.25);
   EXPECT_EQ(g.color, (Rgb<double>{1, 0.5, 0}));
 }
@@ -41,8 +41,8 @@ TEST(GaussianText, ToleratesSpacesUnitsOrderAndPlusMinus) {
       "1e1,edge=20~5;\textinction\t2"};
   for (const std::string& text : same) {
     SCOPED_TRACE(text);
-    const GaussianDescription g = parse_gaussian(text);
-    EXPECT_EQ(g.channels, (Names{"t1", "edge"}));
+    const GaussianPrimitive g = parse_gaussian(text);
+    EXPECT_EQ(g.channels, (std::vector<ChannelRef>{"t1", "edge"}));
     EXPECT_EQ(g.center, (Numbers{80, 20}));
     EXPECT_EQ(widths(g), (Numbers{10, 5}));
     EXPECT_EQ(g.extinction, 2);
@@ -51,7 +51,7 @@ TEST(GaussianText, ToleratesSpacesUnitsOrderAndPlusMinus) {
 }
 
 TEST(GaussianText, NamesMayBeLeftOut) {
-  const GaussianDescription g = parse_gaussian("80~10, 20~5; extinction 1");
+  const GaussianPrimitive g = parse_gaussian("80~10, 20~5; extinction 1");
   EXPECT_TRUE(g.channels.empty());
   EXPECT_EQ(g.center, (Numbers{80, 20}));
 }

@@ -210,9 +210,9 @@ TEST(LookFile, HasShadingAndGradientOpacityBesideTheFunction) {
                                {"gradient": 0, "factor": 0.5}], "unit": "voxel"}})";
   const LookDescription look = parse_look(text, "f");
   ASSERT_TRUE(look.shading);
-  EXPECT_EQ(look.shading->values.power, 5);
+  EXPECT_EQ(look.shading->power, 5);
   ASSERT_TRUE(look.gradient_opacity);
-  EXPECT_EQ(look.gradient_opacity->unit, GradientOpacity::Unit::voxel);
+  EXPECT_EQ(look.gradient_opacity->unit(), GradientOpacity::Unit::voxel);
   const std::string written = look_to_json(look);
   EXPECT_EQ(look_to_json(parse_look(written, "again")), written);
   EXPECT_EQ(transfer_function_to_json(parse_transfer_function(text, "f")),
@@ -229,7 +229,7 @@ TEST(LookFile, HasShadingAndGradientOpacityBesideTheFunction) {
 
 TEST(LookFile, FindsItsChannelsWhenTheDataAreKnown) {
   SceneDescription scene = layer(ramp);
-  scene.layers[0].shading = ShadingDescription{{}, "edge"};
+  scene.layers[0].shading.emplace().channel = "edge";
   EXPECT_EQ(error_of([&] { make_scene(scene); }),
             "scene: shading looks at a channel \"edge\", which is not there; there are: value");
 }

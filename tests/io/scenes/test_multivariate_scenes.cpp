@@ -37,9 +37,9 @@ SceneDescription sphere(MultivariateDescription function) {
   return scene;
 }
 
-GaussianDescription gaussian(Names channels, std::vector<double> center) {
-  GaussianDescription g;
-  g.channels = std::move(channels);
+GaussianPrimitive gaussian(const Names& channels, std::vector<double> center) {
+  GaussianPrimitive g;
+  g.channels.assign(channels.begin(), channels.end());
   g.shape = GaussianWidths{std::vector<double>(center.size(), 0.5), {}};
   g.center = std::move(center);
   g.extinction = 2;
@@ -71,25 +71,25 @@ TEST(MultivariateScene, IsReadAsWritten) {
   ASSERT_EQ(function.gaussians.size(), 4U);
   EXPECT_TRUE(function.gaussians[0].channels.empty());
   EXPECT_EQ(function.gaussians[0].center, (std::vector<double>{80, -20.5}));
-  EXPECT_EQ(std::get<GaussianWidths>(function.gaussians[1].shape).axes,
+  EXPECT_EQ(std::get<GaussianWidths>(*function.gaussians[1].shape).axes,
             (Matrix{{0.6, 0.8}, {-0.8, 0.6}}));
-  EXPECT_EQ(std::get<GaussianCovariance>(function.gaussians[2].shape).covariance,
+  EXPECT_EQ(std::get<GaussianCovariance>(*function.gaussians[2].shape).covariance,
             (Matrix{{4, 1}, {1, 0.5}}));
-  EXPECT_EQ(std::get<GaussianMatrix>(function.gaussians[3].shape).matrix.size(), 3U);
+  EXPECT_EQ(function.gaussians[3].matrix.size(), 3U);
   EXPECT_EQ(function.gaussians[3].color, (Rgb<double>{0, 1, 0}));
   ASSERT_EQ(function.tables.size(), 2U);
   EXPECT_EQ(function.tables[0].channel, "soft");
-  EXPECT_EQ(function.tables[0].points[1].extinction, 0.1);
+  EXPECT_EQ(function.tables[0].function.points()[1].extinction, 0.1);
 }
 
 TEST(MultivariateScene, TermsFindTheirChannels) {
   const SceneDescription scene = valid("channels");
   const auto made = make_multivariate(function_of(scene), channel_names(scene.layers[0].channels));
   EXPECT_EQ(made->channels(), 6);
-  EXPECT_EQ(made->primitives()[0].channels, (std::vector<int>{0, 3}));
-  EXPECT_EQ(made->primitives()[1].channels, (std::vector<int>{5, 2}));
-  EXPECT_EQ(made->primitives()[2].channels, (std::vector<int>{0, 4}));
-  EXPECT_EQ(made->primitives()[3].channels, (std::vector<int>{2, 1}));
+  EXPECT_EQ(made->primitives()[0].channels, (std::vector<ChannelRef>{0, 3}));
+  EXPECT_EQ(made->primitives()[1].channels, (std::vector<ChannelRef>{5, 2}));
+  EXPECT_EQ(made->primitives()[2].channels, (std::vector<ChannelRef>{0, 4}));
+  EXPECT_EQ(made->primitives()[3].channels, (std::vector<ChannelRef>{2, 1}));
   EXPECT_EQ(made->primitives()[0].matrix, (Matrix{{0.1, 0}, {0, 0.2}}));
   EXPECT_EQ(made->primitives()[2].matrix, matrix_from_covariance({{4, 1}, {1, 0.5}}));
   EXPECT_EQ(made->primitives()[3].matrix, (Matrix{{0.1, -0.3}, {0, 0}, {1, 1}}));
@@ -121,7 +121,7 @@ TEST(MultivariateScene, WhatIsMadeOfAFieldIsMadeWhereItIsNamed) {
   f.channels = both;
   EXPECT_EQ(channels(f), both);
   f = {};
-  f.tables = {{"second_derivative", {{0, 1, {1, 1, 1}}}}};
+  f.tables = {{"second_derivative", TransferFunction({{0, 1, {1, 1, 1}}})}};
   EXPECT_EQ(channels(f), (Names{"value", "second_derivative"}));
   f.gaussians = {gaussian({"gradient_magnitude"}, {1})};
   EXPECT_EQ(channels(f), (Names{"value", "gradient_magnitude", "second_derivative"}));
@@ -142,8 +142,13 @@ TEST(MultivariateScene, AFactorFindsItsChannelAndIsWrittenBack) {
   const auto& factor = function_of(scene).factor;
   ASSERT_TRUE(factor);
   EXPECT_EQ(factor->channel, "w");
-  using Point = ChannelFactorDescription::Point;
-  EXPECT_EQ(factor->points, (std::vector<Point>{{-0.5, 0}, {0.5, 2}, {0.5, 0.25}}));
+  const auto points = [](const ChannelTransferFunction& of) {
+    std::vector<std::array<double, 2>> list;
+    for (const auto& point : of.function.points()) list.push_back({point.value, point.extinction});
+    return list;
+  };
+  EXPECT_EQ(points(*factor),
+            (std::vector<std::array<double, 2>>{{-0.5, 0}, {0.5, 2}, {0.5, 0.25}}));
   const Scene made = make_scene(scene);
   const MultivariateTransferFunction& function = *test::channels_of(made).transfer_function;
   ASSERT_NE(function.factor(), nullptr);
@@ -154,7 +159,7 @@ TEST(MultivariateScene, AFactorFindsItsChannelAndIsWrittenBack) {
   EXPECT_EQ(std::get<ChannelsContent>(made.layers.at(1).content).channels->count(), 2);
   const SceneDescription again = parse_scene(scene_to_json(scene), "again");
   EXPECT_EQ(function_of(again).factor->channel, "w");
-  EXPECT_EQ(function_of(again).factor->points, factor->points);
+  EXPECT_EQ(points(*function_of(again).factor), points(*factor));
 }
 
 TEST(MultivariateScene, ChannelsNeedAFunctionOfTheirOwn) {

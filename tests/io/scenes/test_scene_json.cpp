@@ -82,15 +82,15 @@ bool same(const OpacityTable& a, const OpacityTable& b) {
                     });
 }
 bool same(const std::vector<double>& a, const std::vector<double>& b);
-bool same(const GaussianDescription& a, const GaussianDescription& b);
-bool same(const ChannelTableDescription& a, const ChannelTableDescription& b);
+bool same(const GaussianPrimitive& a, const GaussianPrimitive& b);
+bool same(const ChannelTransferFunction& a, const ChannelTransferFunction& b);
 bool same(const ChannelSource& a, const ChannelSource& b);
 bool same(const LayerDescription& a, const LayerDescription& b);
-bool same(const ShadingDescription& a, const ShadingDescription& b);
 bool same(const GradientOpacity::Point& a, const GradientOpacity::Point& b);
-bool same(const GradientOpacityDescription& a, const GradientOpacityDescription& b);
-bool same(const IsosurfaceDescription& a, const IsosurfaceDescription& b);
-bool same(const SliceDescription& a, const SliceDescription& b);
+bool same(const std::shared_ptr<const GradientOpacity>& a,
+          const std::shared_ptr<const GradientOpacity>& b);
+bool same(const Isosurface& a, const Isosurface& b);
+bool same(const Slice& a, const Slice& b);
 bool same(const Light& a, const Light& b);
 bool same(const Background& a, const Background& b);
 template <class T>
@@ -107,15 +107,15 @@ bool same(const GaussianShape& a, const GaussianShape& b) {
     const auto &p = std::get<0>(a), &q = std::get<0>(b);
     return same(p.widths, q.widths) && same_lists(p.axes, q.axes);
   }
-  if (a.index() == 1) return same_lists(std::get<1>(a).covariance, std::get<1>(b).covariance);
-  return same_lists(std::get<2>(a).matrix, std::get<2>(b).matrix);
+  return same_lists(std::get<1>(a).covariance, std::get<1>(b).covariance);
 }
-bool same(const GaussianDescription& a, const GaussianDescription& b) {
-  return a.channels == b.channels && same(a.center, b.center) && same(a.shape, b.shape) &&
+bool same(const GaussianPrimitive& a, const GaussianPrimitive& b) {
+  return a.channels == b.channels && same(a.center, b.center) && same_lists(a.matrix, b.matrix) &&
+         a.shape.has_value() == b.shape.has_value() && (!a.shape || same(*a.shape, *b.shape)) &&
          same(a.extinction, b.extinction) && same(a.color, b.color);
 }
-bool same(const ChannelTableDescription& a, const ChannelTableDescription& b) {
-  return a.channel == b.channel && same(a.points, b.points);
+bool same(const ChannelTransferFunction& a, const ChannelTransferFunction& b) {
+  return a.channel == b.channel && same(a.function.points(), b.function.points());
 }
 bool same(const MultivariateDescription& a, const MultivariateDescription& b) {
   return a.channels == b.channels && same_lists(a.gaussians, b.gaussians) &&
@@ -159,22 +159,28 @@ bool same(const Affine<double>& a, const Affine<double>& b) {
          same(a.matrix.column[1], b.matrix.column[1]) &&
          same(a.matrix.column[2], b.matrix.column[2]) && same(a.translation, b.translation);
 }
-bool same(const ShadingDescription& a, const ShadingDescription& b) {
-  return a.values == b.values && a.channel == b.channel;
-}
 bool same(const GradientOpacity::Point& a, const GradientOpacity::Point& b) {
   return same(a.gradient, b.gradient) && same(a.factor, b.factor);
 }
-bool same(const GradientOpacityDescription& a, const GradientOpacityDescription& b) {
-  return same_lists(a.points, b.points) && a.unit == b.unit && a.channel == b.channel;
+bool same(const std::shared_ptr<const GradientOpacity>& a,
+          const std::shared_ptr<const GradientOpacity>& b) {
+  if (!a || !b) return a == b;
+  return same_lists(a->points(), b->points()) && a->unit() == b->unit() &&
+         a->channel() == b->channel();
 }
-bool same(const IsosurfaceDescription& a, const IsosurfaceDescription& b) {
+template <class Surface>
+bool same_colors(const Surface& a, const Surface& b) {
+  if (!a.colors != !b.colors || !a.written_colors != !b.written_colors) return false;
+  return (!a.colors || same(a.colors->points(), b.colors->points())) &&
+         (!a.written_colors || same(*a.written_colors, *b.written_colors));
+}
+bool same(const Isosurface& a, const Isosurface& b) {
   return same(a.value, b.value) && same(a.opacity, b.opacity) && same(a.color, b.color) &&
-         same(a.colors, b.colors) && a.channel == b.channel && a.color_channel == b.color_channel;
+         same_colors(a, b) && a.channel == b.channel && a.color_channel == b.color_channel;
 }
-bool same(const SliceDescription& a, const SliceDescription& b) {
+bool same(const Slice& a, const Slice& b) {
   return same(a.point, b.point) && same(a.normal, b.normal) && same(a.opacity, b.opacity) &&
-         same(a.colors, b.colors) && a.channel == b.channel;
+         same_colors(a, b) && a.channel == b.channel;
 }
 bool same(const Light& a, const Light& b) {
   return a.kind == b.kind && same(a.color, b.color);
@@ -185,9 +191,9 @@ bool same(const Background& a, const Background& b) {
 bool same(const LayerDescription& a, const LayerDescription& b) {
   return a.name == b.name && a.visible == b.visible && same(a.field, b.field) &&
          same_lists(a.channels, b.channels) && same(a.transfer_function, b.transfer_function) &&
-         same(a.transform, b.transform) && a.projection == b.projection &&
-         same(a.shading, b.shading) && same(a.gradient_opacity, b.gradient_opacity) &&
-         same_lists(a.isosurfaces, b.isosurfaces) && same_lists(a.slices, b.slices);
+         same(a.transform, b.transform) && a.projection == b.projection && a.shading == b.shading &&
+         same(a.gradient_opacity, b.gradient_opacity) && same_lists(a.isosurfaces, b.isosurfaces) &&
+         same_lists(a.slices, b.slices);
 }
 bool same(const SceneDescription& a, const SceneDescription& b) {
   return same_lists(a.layers, b.layers) && same_lists(a.lights, b.lights) &&
@@ -436,7 +442,7 @@ TEST(TransferFunctionJson, TakesSrgbColorsAsSignals) {
            {"value": 0, "extinction": 1, "color": [0.5, 0, 0]}]}]})",
       "t"));
   EXPECT_NEAR(sum.gaussians[0].color.r, 0.214041140482, 1e-12);
-  EXPECT_NEAR(sum.tables[0].points[0].color.r, 0.214041140482, 1e-12);
+  EXPECT_NEAR(sum.tables[0].function.points()[0].color.r, 0.214041140482, 1e-12);
 }
 
 TEST(TransferFunctionJson, MakesOpacityTablesAsExactAsTheToleranceAsks) {

@@ -98,10 +98,12 @@ TEST(Export, OpacityTablesKeepTheirOpacities) {
 TEST(Export, SlicerHoldsShadingAndGradientOpacity) {
   LookDescription look;
   look.transfer_function = OpacityTable{{{0, 0, {0, 0, 0}}, {1, 0.5, {1, 1, 1}}}, 2};
-  look.shading.emplace().values.ambient = 0.125;
-  look.shading->values.power = 7;
-  look.gradient_opacity =
-      GradientOpacityDescription{{{0, 0.25}, {10, 0.5}, {10, 1}}, GradientOpacity::Unit::voxel, {}};
+  look.shading.emplace().ambient = 0.125;
+  look.shading->power = 7;
+  const auto factors = [](std::vector<GradientOpacity::Point> points, GradientOpacity::Unit unit) {
+    return std::make_shared<const GradientOpacity>(std::move(points), unit);
+  };
+  look.gradient_opacity = factors({{0, 0.25}, {10, 0.5}, {10, 1}}, GradientOpacity::Unit::voxel);
   const auto has = [](const std::vector<std::string>& notes, const std::string& part) {
     return std::ranges::any_of(notes,
                                [&](const std::string& note) { return test::contains(note, part); });
@@ -110,12 +112,14 @@ TEST(Export, SlicerHoldsShadingAndGradientOpacity) {
   EXPECT_TRUE(has(exported.notes, "gradient opacity: exact"));
   EXPECT_TRUE(has(exported.notes, "flatness and the kind of gradient"));
   const ImportedTransferFunction back = import_transfer_function(exported.text, "back");
-  EXPECT_EQ(back.shading.value().values, look.shading->values);
-  ASSERT_EQ(back.gradient_opacity.value().points.size(), 3u);
-  EXPECT_EQ(back.gradient_opacity->unit, GradientOpacity::Unit::voxel);
+  EXPECT_EQ(back.shading, look.shading);
+  ASSERT_TRUE(back.gradient_opacity);
+  const std::vector<GradientOpacity::Point>& read = back.gradient_opacity->points();
+  ASSERT_EQ(read.size(), 3u);
+  EXPECT_EQ(back.gradient_opacity->unit(), GradientOpacity::Unit::voxel);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(back.gradient_opacity->points[i].gradient, look.gradient_opacity->points[i].gradient);
-    EXPECT_EQ(back.gradient_opacity->points[i].factor, look.gradient_opacity->points[i].factor);
+    EXPECT_EQ(read[i].gradient, look.gradient_opacity->points()[i].gradient);
+    EXPECT_EQ(read[i].factor, look.gradient_opacity->points()[i].factor);
   }
   for (const ExportFormat format : {ExportFormat::paraview, ExportFormat::table}) {
     ExportOptions options;
@@ -124,9 +128,9 @@ TEST(Export, SlicerHoldsShadingAndGradientOpacity) {
     EXPECT_TRUE(has(notes, "the shading is left out"));
     EXPECT_TRUE(has(notes, "the gradient opacity is left out"));
   }
-  look.gradient_opacity->unit = GradientOpacity::Unit::world;
+  look.gradient_opacity = factors({{0, 0.25}}, GradientOpacity::Unit::world);
   EXPECT_TRUE(has(export_transfer_function(look, {}).notes, "per world length"));
-  look.gradient_opacity = GradientOpacityDescription{{{0, 2}}, GradientOpacity::Unit::voxel, {}};
+  look.gradient_opacity = factors({{0, 2}}, GradientOpacity::Unit::voxel);
   EXPECT_TRUE(has(export_transfer_function(look, {}).notes, "factors above 1"));
 }
 

@@ -252,21 +252,21 @@ TEST(ImportSlicer, ReadsTheLegacyText) {
   EXPECT_EQ(f.table.points[1].opacity, 0.25);
   EXPECT_DOUBLE_EQ(f.table.points[1].color.r, 0.375);
   ASSERT_TRUE(f.shading);
-  EXPECT_EQ(f.shading->values.diffuse, 0.9);
-  EXPECT_EQ(f.shading->values.ambient, 0.1);
-  EXPECT_EQ(f.shading->values.specular, 0.2);
-  EXPECT_EQ(f.shading->values.power, 10);
+  EXPECT_EQ(f.shading->diffuse, 0.9);
+  EXPECT_EQ(f.shading->ambient, 0.1);
+  EXPECT_EQ(f.shading->specular, 0.2);
+  EXPECT_EQ(f.shading->power, 10);
   EXPECT_FALSE(f.gradient_opacity);
   EXPECT_FALSE(has_note(f, "left out"));
   std::string dented = text;
   dented.replace(dented.find("255 1"), 5, "255 0");
   const ImportedTransferFunction g = read(dented, options);
   ASSERT_TRUE(g.gradient_opacity);
-  EXPECT_EQ(g.gradient_opacity->unit, GradientOpacity::Unit::voxel);
-  ASSERT_EQ(g.gradient_opacity->points.size(), 2u);
-  EXPECT_EQ(g.gradient_opacity->points[0].factor, 1);
-  EXPECT_EQ(g.gradient_opacity->points[1].gradient, 255);
-  EXPECT_EQ(g.gradient_opacity->points[1].factor, 0);
+  EXPECT_EQ(g.gradient_opacity->unit(), GradientOpacity::Unit::voxel);
+  ASSERT_EQ(g.gradient_opacity->points().size(), 2u);
+  EXPECT_EQ(g.gradient_opacity->points()[0].factor, 1);
+  EXPECT_EQ(g.gradient_opacity->points()[1].gradient, 255);
+  EXPECT_EQ(g.gradient_opacity->points()[1].factor, 0);
   EXPECT_TRUE(has_note(g, "gradient opacity: a factor of the extinction"));
 
   std::string unlit = text;
@@ -274,7 +274,7 @@ TEST(ImportSlicer, ReadsTheLegacyText) {
   EXPECT_FALSE(read(unlit, options).shading);
   std::string dull = text;
   dull.replace(dull.find("\n10\n"), 4, "\n0\n");
-  EXPECT_EQ(read(dull, options).shading->values.power, 1);
+  EXPECT_EQ(read(dull, options).shading->power, 1);
   EXPECT_TRUE(has_note(read(dull, options), "the specular power, 0, is 1 here"));
   std::string broken = text;
   broken.replace(broken.find("0.9"), 3, "-1");
@@ -295,13 +295,13 @@ TEST(ImportSlicer, ReadsShading) {
       read(slicer(R"("shade": true, "lighting": {"diffuse": 0.9, "ambient": 0.15, "specular": 0.4,
                                                  "specularPower": 30})"));
   ASSERT_TRUE(f.shading);
-  EXPECT_EQ(f.shading->values.ambient, 0.15);
-  EXPECT_EQ(f.shading->values.diffuse, 0.9);
-  EXPECT_EQ(f.shading->values.specular, 0.4);
-  EXPECT_EQ(f.shading->values.power, 30);
+  EXPECT_EQ(f.shading->ambient, 0.15);
+  EXPECT_EQ(f.shading->diffuse, 0.9);
+  EXPECT_EQ(f.shading->specular, 0.4);
+  EXPECT_EQ(f.shading->power, 30);
   EXPECT_TRUE(has_note(f, "shading: ambient 0.15, diffuse 0.9, specular 0.4 with power 30"));
   // As vtkVolumeProperty.
-  EXPECT_EQ(read(slicer(R"("shade": 1)")).shading->values.power, 10);
+  EXPECT_EQ(read(slicer(R"("shade": 1)")).shading->power, 10);
   EXPECT_FALSE(read(slicer(R"("shade": false, "lighting": {"diffuse": 0.9})")).shading);
   EXPECT_TRUE(contains(
       test::error_of([] { read(slicer(R"("shade": true, "lighting": {"diffuse": -1})")); }),
@@ -311,7 +311,8 @@ TEST(ImportSlicer, ReadsShading) {
 TEST(ImportSlicer, ReadsGradientOpacity) {
   const auto points = [](const std::string& nodes, const ImportOptions& options = {}) {
     const auto f = read(slicer("\"gradientOpacity\": {\"points\": [" + nodes + "]}"), options);
-    return f.gradient_opacity ? f.gradient_opacity->points : std::vector<GradientOpacity::Point>();
+    return f.gradient_opacity ? f.gradient_opacity->points()
+                              : std::vector<GradientOpacity::Point>();
   };
   EXPECT_TRUE(points(R"({"x": 0, "y": 1}, {"x": 255, "y": 1})").empty());
   // A midpoint is a corner, a sharpness of 1 a jump; what is below 0 never occurs.
@@ -345,7 +346,7 @@ TEST(ImportSlicer, ARangeMovesGradientsInProportion) {
       "scalarOpacity": {"points": [{"x": 0, "y": 0}, {"x": 10, "y": 1}]},
       "gradientOpacity": {"points": [{"x": 0, "y": 0}, {"x": 3, "y": 1}]}}]}]})",
                       options);
-  EXPECT_EQ(f.gradient_opacity.value().points[1].gradient, 12);
+  EXPECT_EQ(f.gradient_opacity->points()[1].gradient, 12);
 }
 
 TEST(Import, MovesAFunctionToARange) {

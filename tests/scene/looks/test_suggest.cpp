@@ -124,7 +124,7 @@ TEST(SuggestBoundaries, FindsMaterialsAndTheArchesBetweenThem) {
     const GaussianPrimitive& p = nearest(primitives, center);
     EXPECT_NEAR(p.center[0], center[0], 3);
     EXPECT_NEAR(p.center[1], center[1], 0.15 * steepest);
-    EXPECT_EQ(p.channels, (std::vector<int>{0, 1}));
+    EXPECT_EQ(p.channels, (std::vector<ChannelRef>{0, 1}));
   }
 }
 
