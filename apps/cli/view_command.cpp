@@ -84,7 +84,8 @@ view::ViewedScene viewed_scene(const RenderArguments& input) {
   for (const std::string& note : prepared.import_notes) print_note(note);
   light_look(input, prepared);
   scene_to_json(prepared.description);  // throws what cannot be told to a page, as a name's bytes
-  prepared.description.relative_tolerance.reset();  // the page has a tolerance of its own
+  prepared.description.integration.relative_tolerance
+      .reset();  // the page has a tolerance of its own
   const bool keeps_camera = prepared.has_own_camera || !input.camera.empty() || !input.view.empty();
   return {std::move(prepared.description), std::move(prepared.scene), keeps_camera,
           std::move(prepared.quick_layers)};

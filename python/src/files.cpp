@@ -106,7 +106,7 @@ py::object load_scene_file(const std::filesystem::path& path) {
                                                    std::filesystem::absolute(path).parent_path());
   Notes notes;
   SceneDescription complete = description, reading = description;
-  if (description.relative_tolerance) {
+  if (description.integration.relative_tolerance) {
     notes(path.string() +
           ": a tolerance that is a share of the picture is left out; the scene has "
           "the absolute tolerance " +

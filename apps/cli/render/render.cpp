@@ -112,19 +112,19 @@ void write_error_map(Image& image, double tolerance, const std::string& path) {
 /// At the tolerance that is the wanted share of the picture's range.
 RenderResult render_at_share(const RenderArguments& arguments, PreparedScene& prepared,
                              std::optional<std::string>& over) {
+  const double share = *prepared.scene.integration.relative_tolerance;
   const RenderOptions quiet = quiet_options_of(arguments);
   const double range = unless_interrupted(
       [&] { return estimate_range(prepared.scene, quiet.machine, quiet.monitor); });
-  RelativePicture picture =
-      render_relative(*prepared.relative_tolerance, range, [&](double tolerance) {
-        set_scene_tolerance(prepared, tolerance);
-        return render_image(arguments, prepared);
-      });
+  RelativePicture picture = render_relative(share, range, [&](double tolerance) {
+    set_scene_tolerance(prepared, tolerance);
+    return render_image(arguments, prepared);
+  });
   over = picture.over;
   if (!arguments.quiet && !arguments.json) {
     print_note(fmt::format("tolerance {:.3g}: within {} of the largest channel, {:.3g}",
-                           prepared.scene.integration.tolerance,
-                           percent_text(*prepared.relative_tolerance), picture.largest));
+                           prepared.scene.integration.tolerance, percent_text(share),
+                           picture.largest));
   }
   return {std::move(picture.image), std::move(picture.report)};
 }
@@ -154,7 +154,7 @@ int run_render(const RenderArguments& arguments) {
 
   RenderedPicture picture;
   if (arguments.renders()) {
-    RenderResult frame = prepared.relative_tolerance
+    RenderResult frame = prepared.scene.integration.relative_tolerance
                              ? render_at_share(arguments, prepared, picture.over)
                              : render_image(arguments, prepared);
     picture.image = std::move(frame.image);
@@ -244,7 +244,7 @@ void write_picture(const RenderArguments& arguments, const PreparedScene& prepar
                                          report.largest_error, png);
     if (text) print_note(*text);
     const auto advice = picture_advice(prepared.scene, image);
-    if (advice && !text && !prepared.relative_tolerance) print_note(*advice);
+    if (advice && !text && !prepared.scene.integration.relative_tolerance) print_note(*advice);
   }
   if (arguments.renders() && !arguments.json && !arguments.quiet) {
     for (const std::string& line : report_lines(arguments, prepared, report)) print_note(line);

@@ -73,8 +73,6 @@ struct PreparedScene {
   bool array_chosen = false;              ///< of a mesh, for want of a name
   bool has_own_camera = false;            ///< the input has a camera
   double tolerance_asked = 0;             ///< Integration::tolerance is the one used
-  /// Share of the picture's largest channel that the tolerance is to be; nothing: it is absolute.
-  std::optional<double> relative_tolerance;
   /// Whole of a layer on all ranks, where `scene` has the part of one of them; else empty.
   struct WholeLayer {
     std::array<int, 3> dimensions{};

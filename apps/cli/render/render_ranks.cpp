@@ -90,7 +90,11 @@ class RankRun {
     SceneRequest request;
     agreed_on_arguments([&] {
       request = request_scene(arguments_);
-      if (!request.prepared.relative_tolerance) return;
+      const Integration& integration = request.prepared.description.integration;
+      if (!integration.relative_tolerance || integration.method != Method::exact ||
+          arguments_.reference) {
+        return;
+      }
       throw UsageError(
           "--tolerance: a share of the picture's range is not found by --ranks; give " +
           std::string("a number"));

@@ -171,8 +171,8 @@ void add_metadata(const RenderArguments& arguments, const PreparedScene& prepare
   }
   if (prepared.knows_its_error(arguments)) {
     metadata["pellucid.tolerance"] = fmt::format("{}", integration.tolerance);
-    if (prepared.relative_tolerance) {
-      metadata["pellucid.relative_tolerance"] = fmt::format("{}", *prepared.relative_tolerance);
+    if (const auto& share = integration.relative_tolerance) {
+      metadata["pellucid.relative_tolerance"] = fmt::format("{}", *share);
     }
     metadata["pellucid.grade"] = grade_text(integration.grade);
     metadata["pellucid.largest_error"] = fmt::format("{}", report.largest_error);
@@ -309,8 +309,8 @@ Json report_json(const RenderArguments& arguments, const PreparedScene& prepared
   const auto of_exact = [&](const Json& value) { return exact ? value : Json(); };
   json["tolerance_asked"] = of_exact(prepared.tolerance_asked);
   json["tolerance"] = of_exact(scene.integration.tolerance);
-  json["relative_tolerance"] =
-      of_exact(prepared.relative_tolerance ? Json(*prepared.relative_tolerance) : Json());
+  const auto& share = scene.integration.relative_tolerance;
+  json["relative_tolerance"] = of_exact(share ? Json(*share) : Json());
   json["largest_channel"] = largest;
   json["below_tolerance"] = of_exact(largest <= scene.integration.tolerance);
   json["grade"] = of_exact(grade_text(scene.integration.grade));

@@ -437,7 +437,7 @@ void set_scene_tolerance(PreparedScene& prepared, double tolerance) {
   scene.integration.set_tolerance(tolerance);
   // With the tolerance that was used, a saved scene gives this picture.
   description.integration.tolerance = scene.integration.tolerance;
-  description.relative_tolerance.reset();
+  description.integration.relative_tolerance.reset();
   fit_opacity_tables(description, scene);
 }
 
@@ -456,17 +456,14 @@ SceneRequest request_scene(const RenderArguments& arguments) {
   prepared.tolerance_asked = integration.tolerance;
   if (arguments.tolerance) {
     const PictureTolerance tolerance = parse_picture_tolerance("--tolerance", *arguments.tolerance);
-    description.relative_tolerance.reset();
+    integration.relative_tolerance.reset();
     if (tolerance.is_share) {
-      description.relative_tolerance = tolerance.value;
+      integration.relative_tolerance = tolerance.value;
     } else {
       prepared.tolerance_asked = tolerance.value;
     }
   }
   integration.set_tolerance(prepared.tolerance_asked);
-  if (!arguments.reference && integration.method == Method::exact) {
-    prepared.relative_tolerance = description.relative_tolerance;
-  }
   // The files of a scene are known only now.
   refuse_overwriting(output_files(arguments), data_files(description));
   prepared.transfer_function_from = !arguments.transfer_function.empty()
@@ -524,6 +521,7 @@ PreparedScene complete_scene(const RenderArguments& arguments, SceneRequest requ
                           });
   }
   scene.integration = description.integration;
+  if (!prepared.knows_its_error(arguments)) scene.integration.relative_tolerance.reset();
   check_data(scene);
   if (!arguments.view.empty()) {
     scene.camera = view_camera(visible(scene), arguments.view, scene.size);

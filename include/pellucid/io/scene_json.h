@@ -79,10 +79,6 @@ struct SceneDescription {
   ImageSize size;
   int samples = 1;
   Integration integration;
-  /// Tolerance as a share of the picture's largest channel, in (0, 1], in place of
-  /// integration.tolerance. The program `pellucid` renders to find it. make_scene() ignores it,
-  /// because the tolerance depends on the picture.
-  std::optional<double> relative_tolerance;
   std::optional<Background> background;
   /// True if a .png keeps its transparency; if not, one without a background gets
   /// calm_background().

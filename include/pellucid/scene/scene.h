@@ -94,6 +94,9 @@ struct Integration {
   /// render() throws Error if it is outside of the limits above.
   double tolerance = default_tolerance;
   Grade grade = Grade::estimated;
+  /// Tolerance as a share of the picture's largest channel, in (0, 1]. The program `pellucid`
+  /// renders to find the tolerance of that; make_scene() and render() use `tolerance` alone.
+  std::optional<double> relative_tolerance{};
 
   bool operator==(const Integration&) const = default;
   /// Sets the tolerance to `wanted`, clamped to the limits, and returns it. Throws Error if

@@ -61,8 +61,7 @@ Camera camera_from(const Node& node, ImageSize size) {
   return camera;
 }
 
-void read_integration(const Node& node, SceneDescription& scene) {
-  Integration& integration = scene.integration;
+void read_integration(const Node& node, Integration& integration) {
   node.expect_object({"method", "tolerance", "relative_tolerance", "grade", "precision", "step"});
   if (const auto method = node.find("method")) {
     method->one_of({"exact", "rectangle", "taylor", "midpoint", "trapezoid", "simpson", "linear",
@@ -74,7 +73,7 @@ void read_integration(const Node& node, SceneDescription& scene) {
   }
   if (const auto share = node.find("relative_tolerance")) {
     if (node.has("tolerance")) share->fail("stands beside \"tolerance\"; give one of the two");
-    scene.relative_tolerance = share->positive_number(1);
+    integration.relative_tolerance = share->positive_number(1);
   }
   if (const auto grade = node.find("grade")) {
     integration.grade =
@@ -254,7 +253,7 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
     scene.camera = camera_from(*camera, scene.size);
   }
   if (const auto integration = document.find("integration")) {
-    read_integration(*integration, scene);
+    read_integration(*integration, scene.integration);
   }
   return scene;
 }

@@ -590,8 +590,9 @@ std::string scene_to_json(const SceneDescription& scene) {
   }
   Members integration("  ");
   integration.add("method", joined({"\"", method_name(scene.integration.method), "\""}));
-  if (scene.relative_tolerance) {
-    integration.add("relative_tolerance", number(*scene.relative_tolerance, "the tolerance"));
+  if (scene.integration.relative_tolerance) {
+    integration.add("relative_tolerance",
+                    number(*scene.integration.relative_tolerance, "the tolerance"));
   } else {
     integration.add("tolerance", number(scene.integration.tolerance, "the tolerance"));
   }

@@ -201,7 +201,7 @@ bool same(const SceneDescription& a, const SceneDescription& b) {
          a.size.height == b.size.height && a.samples == b.samples &&
          a.integration.method == b.integration.method &&
          same(a.integration.tolerance, b.integration.tolerance) &&
-         a.relative_tolerance == b.relative_tolerance &&
+         a.integration.relative_tolerance == b.integration.relative_tolerance &&
          a.integration.grade == b.integration.grade &&
          a.integration.precision == b.integration.precision &&
          same(a.integration.step, b.integration.step) && same(a.background, b.background) &&
