@@ -114,12 +114,7 @@ py::object load_scene_file(const std::filesystem::path& path) {
   }
   const auto sink = [&notes](const std::string& text) { notes(text); };
   for (LayerDescription& layer : reading.layers) {
-    layer.field.options.note = sink;
-    for (ChannelSource& channel : layer.channels) {
-      if (auto* field = std::get_if<FieldSource>(&channel.source)) field->options.note = sink;
-    }
-    if (layer.labels) layer.labels->field.options.note = sink;
-    if (layer.mask) layer.mask->field.options.note = sink;
+    visit_sources(layer, [&](FieldSource& field) { field.options.note = sink; });
     if (layer.mesh) layer.mesh->options.note = sink;
   }
   Scene scene;
@@ -145,9 +140,7 @@ std::optional<py::object> read_colors(FieldSource source) {
   if (!show_own_colors(layer)) return std::nullopt;
   const Scene scene = with_notes([&](const auto& sink) {
     SceneDescription reading = description;
-    for (ChannelSource& channel : reading.layers.front().channels) {
-      if (auto* field = std::get_if<FieldSource>(&channel.source)) field->options.note = sink;
-    }
+    visit_sources(reading.layers.front(), [&](FieldSource& field) { field.options.note = sink; });
     return make_scene(reading, all_cores());
   });
   return to_python(scene, description).attr("layers")[py::int_(0)];

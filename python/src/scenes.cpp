@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes.h"
 
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <utility>
 
+#include "fields.h"
 #include "handles.h"
 #include "images.h"
 #include "pellucid/cpu/framed_camera.h"
@@ -14,47 +16,6 @@
 namespace pellucid::python {
 
 namespace {
-
-std::string text_of(const py::object& object, const std::string& what) {
-  if (!py::isinstance<py::str>(object)) {
-    throw Error(what + ": expected a text, got " + short_repr(object));
-  }
-  return py::cast<std::string>(object);
-}
-
-/// Returns what `from_name` finds for a text. Throws Error that lists `names`.
-template <class FromName>
-auto named(const py::object& object, const std::string& what, const char* names,
-           FromName&& from_name) {
-  const auto found = from_name(text_of(object, what));
-  if (!found) throw Error(what + ": expected " + names + ", got " + short_repr(object));
-  return *found;
-}
-
-/// Returns the index of a text in a list of texts.
-template <std::size_t n>
-std::size_t choice(const py::object& object, const std::string& what,
-                   const char* const (&names)[n]) {
-  const std::string text = text_of(object, what);
-  std::string list;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (text == names[i]) return i;
-    list += (i == 0 ? "\"" : ", \"") + std::string(names[i]) + "\"";
-  }
-  throw Error(what + ": expected one of " + list + ", got " + short_repr(object));
-}
-
-int integer_of(const py::object& object, const std::string& what) {
-  const Py_ssize_t number = py::isinstance<py::bool_>(object) ? -1
-                            : PyLong_Check(object.ptr()) != 0 || PyIndex_Check(object.ptr()) != 0
-                                ? PyNumber_AsSsize_t(object.ptr(), nullptr)
-                                : -1;
-  if (PyErr_Occurred() != nullptr || number < 0 || number > std::numeric_limits<int>::max()) {
-    PyErr_Clear();
-    throw Error(what + ": expected a whole number from 0, got " + short_repr(object));
-  }
-  return static_cast<int>(number);
-}
 
 /// Throws Error unless the object has what only objects of this class have.
 void check_kind(const py::handle& object, const char* attribute, const std::string& what,
@@ -71,36 +32,29 @@ std::string kind_of(const py::handle& object, const std::string& what, const cha
   return py::cast<std::string>(object.attr("_kind"));
 }
 
+/// Reads one of several kinds of parts.
+template <class Variant>
+Variant kind_from(const py::handle& object, const std::string& what,
+                  std::span<const char* const> kinds, const char* expected) {
+  const auto found = std::ranges::find(kinds, kind_of(object, what, expected));
+  Variant made =
+      scene_fields::alternative<Variant>(static_cast<std::size_t>(found - kinds.begin()));
+  std::visit([&](auto& part) { scene_fields::visit_fields(part, FieldReader(object, what)); },
+             made);
+  return made;
+}
+
 Light light_of(const py::handle& object, const std::string& what) {
-  const std::string kind = kind_of(object, what, "HeadLight, DirectionalLight or PointLight");
-  Light light;
-  light.color = color_of(object.attr("color"), what + ".color");
-  if (kind == "directional") {
-    light.kind = DirectionalLight{vector_of(object.attr("direction"), what + ".direction")};
-  } else if (kind == "point") {
-    light.kind = PointLight{vector_of(object.attr("position"), what + ".position")};
-  }
+  Light light{kind_from<decltype(Light::kind)>(object, what, scene_fields::light_kinds,
+                                               "HeadLight, DirectionalLight or PointLight")};
+  scene_fields::visit_fields(light, FieldReader(object, what));
   return light;
 }
 
 Clip clip_of(const py::handle& object, const std::string& what) {
-  static constexpr const char* const sides[] = {"inside", "outside"};
-  const std::string kind = kind_of(object, what, "ClipPlane, ClipBox, ClipSphere or ClipCylinder");
-  const auto vector = [&](const char* name) {
-    return vector_of(object.attr(name), what + "." + name);
-  };
-  const auto radius = [&] { return number_of(object.attr("radius"), what + ".radius"); };
-  Clip clip;
-  clip.keep_inside = choice(object.attr("keep"), what + ".keep", sides) == 0;
-  if (kind == "plane") {
-    clip.shape = ClipPlane{vector("point"), vector("normal")};
-  } else if (kind == "box") {
-    clip.shape = ClipBox{vector("lower"), vector("upper")};
-  } else if (kind == "sphere") {
-    clip.shape = ClipSphere{vector("center"), radius()};
-  } else {
-    clip.shape = ClipCylinder{vector("start"), vector("end"), radius()};
-  }
+  Clip clip{kind_from<decltype(Clip::shape)>(object, what, scene_fields::clip_shapes,
+                                             "ClipPlane, ClipBox, ClipSphere or ClipCylinder")};
+  clip.keep_inside = choice(object.attr("keep"), what + ".keep", scene_fields::clip_sides) == 0;
   return clip;
 }
 
@@ -117,59 +71,18 @@ auto list_of(const py::object& list, const std::string& what, Read&& read) {
 }
 
 Shading shading_of(const py::object& object, const std::string& what) {
-  static constexpr const char* const gradients[] = {"smooth", "field"};
   check_kind(object, "flatness", what, "pellucid.Shading");
-  const auto number = [&](const char* name) {
-    return number_of(object.attr(name), what + "." + name);
-  };
-  Shading shading;
-  shading.ambient = number("ambient");
-  shading.diffuse = number("diffuse");
-  shading.specular = number("specular");
-  shading.power = number("power");
-  shading.gradient = choice(object.attr("gradient"), what + ".gradient", gradients) == 0
-                         ? GradientKind::smooth
-                         : GradientKind::field;
-  const auto optional_number = [&](const char* name) -> std::optional<double> {
-    if (object.attr(name).is_none()) return std::nullopt;
-    return number(name);
-  };
-  shading.flatness = optional_number("flatness");
-  shading.channel = integer_of(object.attr("channel"), what + ".channel");
-  shading.flat_gradient = optional_number("flat_gradient");
-  return shading;
-}
-
-std::shared_ptr<const TransferFunction> colors_of(const py::object& object,
-                                                  const std::string& what) {
-  if (object.is_none()) return nullptr;
-  if (!py::isinstance<TransferFunction>(object)) {
-    throw Error(what + ": expected a TransferFunction or None, got " + short_repr(object));
-  }
-  return py::cast<std::shared_ptr<TransferFunction>>(object);
+  return part_of<Shading>(object, what);
 }
 
 Isosurface isosurface_of(const py::handle& object, const std::string& what) {
   check_kind(object, "color_channel", what, "pellucid.Isosurface");
-  Isosurface surface;
-  surface.value = number_of(object.attr("value"), what + ".value");
-  surface.opacity = number_of(object.attr("opacity"), what + ".opacity");
-  surface.color = color_of(object.attr("color"), what + ".color");
-  surface.colors = colors_of(object.attr("colors"), what + ".colors");
-  surface.channel = integer_of(object.attr("channel"), what + ".channel");
-  surface.color_channel = integer_of(object.attr("color_channel"), what + ".color_channel");
-  return surface;
+  return part_of<Isosurface>(object, what);
 }
 
 Slice slice_of(const py::handle& object, const std::string& what) {
   check_kind(object, "normal", what, "pellucid.Slice");
-  Slice slice;
-  slice.point = vector_of(object.attr("point"), what + ".point");
-  slice.normal = vector_of(object.attr("normal"), what + ".normal");
-  slice.opacity = number_of(object.attr("opacity"), what + ".opacity");
-  slice.colors = colors_of(object.attr("colors"), what + ".colors");
-  slice.channel = integer_of(object.attr("channel"), what + ".channel");
-  return slice;
+  return part_of<Slice>(object, what);
 }
 
 /// Three rows of four numbers, or four as of a 4 x 4 matrix.
@@ -335,9 +248,9 @@ Layer layer_of(const py::object& object, const std::string& what, LayerDescripti
   layer.transform = transform_of(object.attr("transform"), what + ": transform");
   layer.clips = list_of(object.attr("clips"), what + ": clip", clip_of);
   if (const py::object projection = object.attr("projection"); !projection.is_none()) {
-    layer.projection =
-        named(projection, what + ": projection", "\"maximum\", \"minimum\", \"mean\" or \"sum\"",
-              [](const std::string& name) { return projection_from_name(name); });
+    layer.projection = static_cast<LayerProjection>(
+        choice(projection, what + ": projection", scene_fields::layer_projections,
+               "\"maximum\", \"minimum\", \"mean\" or \"sum\""));
   }
   if (const py::object shading = object.attr("shading"); !shading.is_none()) {
     layer.shading = shading_of(shading, what + ": shading");
@@ -355,19 +268,8 @@ Layer layer_of(const py::object& object, const std::string& what, LayerDescripti
 }
 
 Integration integration_of(const py::object& object) {
-  static constexpr const char* const grades[] = {"estimated", "proved"};
-  static constexpr const char* const precisions[] = {"automatic", "float32", "float64"};
   check_kind(object, "grade", "integration", "pellucid.Integration");
-  Integration integration;
-  integration.tolerance = number_of(object.attr("tolerance"), "tolerance");
-  integration.grade =
-      choice(object.attr("grade"), "grade", grades) == 0 ? Grade::estimated : Grade::proved;
-  integration.method = named(object.attr("method"), "method", "\"exact\" or a sampling method",
-                             [](const std::string& name) { return method_from_name(name); });
-  integration.precision =
-      static_cast<Precision>(choice(object.attr("precision"), "precision", precisions));
-  integration.step = number_of(object.attr("step"), "step");
-  return integration;
+  return part_of<Integration>(object, "");
 }
 
 /// Gives each opacity table the points that the scene's tolerance wants, or the last ones if they
@@ -401,19 +303,48 @@ void fit_tables(PythonScene& made, const py::object& layers) {
 
 }  // namespace
 
+std::string text_of(const py::object& object, const std::string& what) {
+  if (!py::isinstance<py::str>(object)) {
+    throw Error(what + ": expected a text, got " + short_repr(object));
+  }
+  return py::cast<std::string>(object);
+}
+
+std::size_t choice(const py::object& object, const std::string& what,
+                   std::span<const char* const> names, const char* expected) {
+  const auto found = std::ranges::find(names, text_of(object, what));
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  std::string list;
+  for (const char* const name : names)
+    list += (list.empty() ? "\"" : ", \"") + std::string(name) + "\"";
+  throw Error(what + ": expected " + (expected != nullptr ? expected : "one of " + list) +
+              ", got " + short_repr(object));
+}
+
+int integer_of(const py::object& object, const std::string& what) {
+  const Py_ssize_t number = py::isinstance<py::bool_>(object) ? -1
+                            : PyLong_Check(object.ptr()) != 0 || PyIndex_Check(object.ptr()) != 0
+                                ? PyNumber_AsSsize_t(object.ptr(), nullptr)
+                                : -1;
+  if (PyErr_Occurred() != nullptr || number < 0 || number > std::numeric_limits<int>::max()) {
+    PyErr_Clear();
+    throw Error(what + ": expected a whole number from 0, got " + short_repr(object));
+  }
+  return static_cast<int>(number);
+}
+
+std::shared_ptr<const TransferFunction> colors_of(const py::object& object,
+                                                  const std::string& what) {
+  if (object.is_none()) return nullptr;
+  if (!py::isinstance<TransferFunction>(object)) {
+    throw Error(what + ": expected a TransferFunction or None, got " + short_repr(object));
+  }
+  return py::cast<std::shared_ptr<TransferFunction>>(object);
+}
+
 Camera camera_of(const py::object& object) {
   check_kind(object, "focal_point", "camera", "pellucid.Camera");
-  static constexpr const char* const projections[] = {"perspective", "orthographic"};
-  Camera camera;
-  camera.projection = choice(object.attr("projection"), "camera.projection", projections) == 0
-                          ? Projection::perspective
-                          : Projection::orthographic;
-  camera.position = vector_of(object.attr("position"), "camera.position");
-  camera.focal_point = vector_of(object.attr("focal_point"), "camera.focal_point");
-  camera.up = vector_of(object.attr("up"), "camera.up");
-  camera.vertical_angle = number_of(object.attr("vertical_angle"), "camera.vertical_angle");
-  camera.parallel_scale = number_of(object.attr("parallel_scale"), "camera.parallel_scale");
-  return camera;
+  return part_of<Camera>(object, "camera");
 }
 
 SceneDescription described(const PythonScene& made) {
@@ -495,14 +426,6 @@ PythonScene complete_python_scene(const py::object& object) {
 
 Scene complete_scene(const py::object& object) {
   return std::move(complete_python_scene(object).scene);
-}
-
-py::object to_python(const Camera& camera) {
-  return py::module_::import("pellucid.scene")
-      .attr("Camera")(
-          to_tuple(camera.position), to_tuple(camera.focal_point), to_tuple(camera.up),
-          camera.vertical_angle, camera.parallel_scale,
-          camera.projection == Projection::perspective ? "perspective" : "orthographic");
 }
 
 void bind_scenes(py::module_& module) {

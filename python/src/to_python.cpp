@@ -2,6 +2,7 @@
 #include <string>
 #include <utility>
 
+#include "fields.h"
 #include "handles.h"
 #include "images.h"
 #include "scenes.h"
@@ -13,40 +14,27 @@ namespace {
 /// Makes Python's objects of the parts of a scene.
 class Maker {
  public:
+  /// Returns an object of the class with the fields of a part, beside `arguments`.
+  template <class Part>
+  py::object part(const char* name, const Part& part, py::dict arguments = {}) const {
+    scene_fields::visit_fields(part, FieldWriter(arguments));
+    return of(name)(**arguments);
+  }
+
   py::object light(const Light& light) const {
-    const py::tuple color = to_tuple(light.color);
-    if (const auto* const far = std::get_if<DirectionalLight>(&light.kind)) {
-      return of("DirectionalLight")(to_tuple(far->direction), color);
-    }
-    if (const auto* const point = std::get_if<PointLight>(&light.kind)) {
-      return of("PointLight")(to_tuple(point->position), color);
-    }
-    return of("HeadLight")(color);
+    static constexpr const char* classes[] = {"HeadLight", "DirectionalLight", "PointLight"};
+    py::dict arguments;
+    scene_fields::visit_fields(light, FieldWriter(arguments));
+    const char* const name = classes[light.kind.index()];
+    return std::visit([&](const auto& kind) { return part(name, kind, arguments); }, light.kind);
   }
 
   py::object clip(const Clip& clip) const {
-    const std::string keep = clip.keep_inside ? "inside" : "outside";
-    if (const auto* const plane = std::get_if<ClipPlane>(&clip.shape)) {
-      return of("ClipPlane")(to_tuple(plane->point), to_tuple(plane->normal),
-                             py::arg("keep") = keep);
-    }
-    if (const auto* const box = std::get_if<ClipBox>(&clip.shape)) {
-      return of("ClipBox")(to_tuple(box->lower), to_tuple(box->upper), py::arg("keep") = keep);
-    }
-    if (const auto* const sphere = std::get_if<ClipSphere>(&clip.shape)) {
-      return of("ClipSphere")(to_tuple(sphere->center), sphere->radius, py::arg("keep") = keep);
-    }
-    const auto& cylinder = std::get<ClipCylinder>(clip.shape);
-    return of("ClipCylinder")(to_tuple(cylinder.start), to_tuple(cylinder.end), cylinder.radius,
-                              py::arg("keep") = keep);
-  }
-
-  py::object integration(const Integration& integration) const {
-    static constexpr const char* const precisions[] = {"automatic", "float32", "float64"};
-    return of("Integration")(
-        integration.tolerance, integration.grade == Grade::proved ? "proved" : "estimated",
-        std::string(method_name(integration.method)),
-        precisions[static_cast<std::size_t>(integration.precision)], integration.step);
+    static constexpr const char* classes[] = {"ClipPlane", "ClipBox", "ClipSphere", "ClipCylinder"};
+    py::dict arguments;
+    arguments["keep"] = scene_fields::clip_sides[clip.keep_inside ? 0 : 1];
+    const char* const name = classes[clip.shape.index()];
+    return std::visit([&](const auto& shape) { return part(name, shape, arguments); }, clip.shape);
   }
 
   py::object layer(const Layer& layer, const LayerDescription& description) const {
@@ -64,19 +52,13 @@ class Maker {
     parts["transform"] = py::make_tuple(row(0), row(1), row(2));
     py::list clips, isosurfaces, slices;
     for (const Clip& each : layer.clips) clips.append(clip(each));
-    for (const Isosurface& s : layer.isosurfaces) {
-      isosurfaces.append(of("Isosurface")(s.value, to_tuple(s.color), s.opacity, colors(s.colors),
-                                          s.channel.index(), s.color_channel.index()));
-    }
-    for (const Slice& s : layer.slices) {
-      slices.append(of("Slice")(to_tuple(s.point), to_tuple(s.normal), s.opacity, colors(s.colors),
-                                s.channel.index()));
-    }
+    for (const Isosurface& each : layer.isosurfaces) isosurfaces.append(part("Isosurface", each));
+    for (const Slice& each : layer.slices) slices.append(part("Slice", each));
     parts["clips"] = clips;
     parts["isosurfaces"] = isosurfaces;
     parts["slices"] = slices;
     if (layer.projection) parts["projection"] = std::string(projection_name(*layer.projection));
-    if (layer.shading) parts["shading"] = shading(*layer.shading);
+    if (layer.shading) parts["shading"] = part("Shading", *layer.shading);
     if (layer.gradient_opacity) {
       parts["gradient_opacity"] = std::const_pointer_cast<GradientOpacity>(layer.gradient_opacity);
     }
@@ -143,20 +125,14 @@ class Maker {
         std::get<std::shared_ptr<const MultivariateTransferFunction>>(mesh->transfer_function));
   }
 
-  static py::object colors(const std::shared_ptr<const TransferFunction>& function) {
-    return function ? py::cast(held(function)) : py::object(py::none());
-  }
-
-  py::object shading(const Shading& s) const {
-    return of("Shading")(s.ambient, s.diffuse, s.specular, s.power,
-                         std::string(gradient_kind_name(s.gradient)), s.flatness, s.channel.index(),
-                         s.flat_gradient);
-  }
-
   py::module_ scene_ = py::module_::import("pellucid.scene");
 };
 
 }  // namespace
+
+py::object to_python(const Camera& camera) {
+  return Maker().part("Camera", camera);
+}
 
 py::object to_python(const Scene& scene, const SceneDescription& description) {
   const Maker make;
@@ -173,7 +149,7 @@ py::object to_python(const Scene& scene, const SceneDescription& description) {
   if (description.camera) parts["camera"] = to_python(*description.camera);
   parts["size"] = py::make_tuple(scene.size.width, scene.size.height);
   parts["samples"] = scene.samples;
-  parts["integration"] = make.integration(scene.integration);
+  parts["integration"] = make.part("Integration", scene.integration);
   if (description.is_transparent) parts["background"] = "transparent";
   if (const auto& background = scene.background) {
     if (background->is_even()) {

@@ -482,10 +482,7 @@ SceneRequest request_scene(const RenderArguments& arguments) {
   }
   request.mesh_notes = std::make_shared<std::vector<std::string>>();
   for (LayerDescription& layer : rendered.layers) {
-    set_notes(layer.field, arguments.quiet);
-    set_notes(layer.channels, arguments.quiet);
-    if (layer.labels) set_notes(layer.labels->field, arguments.quiet);
-    if (layer.mask) set_notes(layer.mask->field, arguments.quiet);
+    visit_sources(layer, [&](FieldSource& field) { set_notes(field, arguments.quiet); });
     if (layer.mesh) {  // printed last, so that a failure is one line
       layer.mesh->options.note = [notes = request.mesh_notes](const std::string& note) {
         notes->push_back(note);

@@ -160,6 +160,8 @@ void name_channels(LayerDescription& layer);
 Scene make_scene(const SceneDescription& description, const ParallelFor& parallel = {},
                  std::vector<MeshSource>* meshes_used = nullptr);
 
+/// Calls visit(field) with every field that the layer's data, labels and mask are read from.
+void visit_sources(LayerDescription& layer, const std::function<void(FieldSource&)>& visit);
 /// Calls visit(path) with every path of the description, empty ones too, to be looked at or
 /// changed.
 void visit_paths(SceneDescription& description,

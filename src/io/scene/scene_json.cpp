@@ -4,14 +4,13 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "pellucid/scene/error.h"
+#include "read_fields.h"
 #include "scene_json_parts.h"
 
 namespace pellucid {
 namespace {
 
 using scene_json::Node;
-using scene_json::vector;
 
 constexpr int newest_version = 2;
 
@@ -28,63 +27,15 @@ std::optional<int> checked_version(const Node& document) {
 }
 
 Camera camera_from(const Node& node, ImageSize size) {
-  node.expect_object(
-      {"projection", "position", "focal_point", "up", "vertical_angle", "parallel_scale"});
-  Camera camera;
-  if (const auto projection = node.find("projection")) {
-    camera.projection = projection->one_of({"perspective", "orthographic"}) == 0
-                            ? Projection::perspective
-                            : Projection::orthographic;
-  }
-  camera.position = vector(node.at("position", "give the camera's place [x, y, z]"));
-  camera.focal_point = vector(node.at("focal_point", "give a point [x, y, z] to look at"));
-  if (const auto up = node.find("up")) camera.up = vector(*up);
+  const Camera camera = scene_json::read_fields<Camera>(node);
   const bool perspective = camera.projection == Projection::perspective;
   if (const char* other = perspective ? "parallel_scale" : "vertical_angle"; node.has(other)) {
     node.fail_at(other, perspective
                             ? "makes no sense in a perspective camera; give \"vertical_angle\""
                             : "makes no sense in an orthographic camera; give \"parallel_scale\"");
   }
-  if (const auto angle = node.find("vertical_angle")) {
-    camera.vertical_angle = angle->number_between(0, 180);
-  }
-  if (!perspective) {
-    camera.parallel_scale =
-        node.at("parallel_scale", "give half of the image's height in world units")
-            .positive_number();
-  }
-  try {
-    make_camera_frame(camera, size);
-  } catch (const Error& error) {
-    node.fail(error.what());
-  }
+  scene_json::checked(node, [&] { make_camera_frame(camera, size); });
   return camera;
-}
-
-void read_integration(const Node& node, Integration& integration) {
-  node.expect_object({"method", "tolerance", "relative_tolerance", "grade", "precision", "step"});
-  if (const auto method = node.find("method")) {
-    method->one_of({"exact", "rectangle", "taylor", "midpoint", "trapezoid", "simpson", "linear",
-                    "preintegrated", "kniss", "gaussian", "homogeneous", "average", "partial"});
-    integration.method = *method_from_name(method->string());
-  }
-  if (const auto tolerance = node.find("tolerance")) {
-    integration.tolerance = tolerance->number(smallest_tolerance, largest_tolerance);
-  }
-  if (const auto share = node.find("relative_tolerance")) {
-    if (node.has("tolerance")) share->fail("stands beside \"tolerance\"; give one of the two");
-    integration.relative_tolerance = share->positive_number(1);
-  }
-  if (const auto grade = node.find("grade")) {
-    integration.grade =
-        std::array{Grade::estimated, Grade::proved}[grade->one_of({"estimated", "proved"})];
-  }
-  if (const auto precision = node.find("precision")) {
-    integration.precision =
-        std::array{Precision::automatic, Precision::float32,
-                   Precision::float64}[precision->one_of({"automatic", "float", "double"})];
-  }
-  if (const auto step = node.find("step")) integration.step = step->positive_number(largest_step);
 }
 
 /// Channels are looked up here, where all names are known.
@@ -115,28 +66,24 @@ void read_data(const Node& node, const std::filesystem::path& folder, LayerDescr
   const auto function = node.find("transfer_function");
   if (!function) return;
   layer.transfer_function = scene_json::transfer_function(*function);
-  const auto* multivariate = std::get_if<MultivariateDescription>(&*layer.transfer_function);
+  const MultivariateDescription* const multivariate = scene_json::multivariate_of(layer);
   if (multivariate == nullptr) {
     if (layer.channels.empty() && !(layer.mesh && layer.mesh->channels.size() > 1)) return;
     function->fail(
         "is of one variable, but here are channels; give \"gaussians\", or put the points "
         "into \"tables\": [{\"channel\": ..., \"points\": ...}]");
   }
-  try {
+  scene_json::checked(*function, [&] {
     make_multivariate(*multivariate, function_channels(layer), known_channels(layer));
-  } catch (const Error& error) {
-    function->fail(error.what());
-  }
+  });
 }
 
 LayerProjection read_projection(const Node& node, const LayerDescription& layer) {
-  const std::array kinds{LayerProjection::maximum, LayerProjection::minimum, LayerProjection::mean,
-                         LayerProjection::sum};
-  const LayerProjection projection = kinds[node.one_of({"maximum", "minimum", "mean", "sum"})];
-  const bool multivariate =
-      layer.transfer_function &&
-      std::holds_alternative<MultivariateDescription>(*layer.transfer_function);
-  if (multivariate || !layer.channels.empty() || (layer.mesh && layer.mesh->channels.size() > 1)) {
+  const auto& names = scene_fields::layer_projections;
+  const auto projection =
+      static_cast<LayerProjection>(node.one_of({std::begin(names), std::end(names)}));
+  if (scene_json::multivariate_of(layer) != nullptr || !layer.channels.empty() ||
+      (layer.mesh && layer.mesh->channels.size() > 1)) {
     node.fail("is of one variable; give a \"field\" or one array with a function of one");
   }
   if (layer.labels) node.fail("makes no sense for labels; leave it out");
@@ -154,10 +101,7 @@ LayerDescription read_layer(const Node& node, const std::filesystem::path& folde
   if (const auto visible = node.find("visible")) layer.visible = visible->boolean();
   read_data(node, folder, layer);
   if (const auto mask = node.find("mask")) {
-    const bool multivariate =
-        layer.transfer_function &&
-        std::holds_alternative<MultivariateDescription>(*layer.transfer_function);
-    if (!node.has("field") || multivariate) {
+    if (!node.has("field") || scene_json::multivariate_of(layer) != nullptr) {
       node.fail_at("mask", "needs a \"field\" with a function of one variable");
     }
     layer.mask = scene_json::mask_source(*mask, folder);
@@ -196,11 +140,7 @@ std::vector<LayerDescription> read_layers(const Node& document,
       {"pellucid", "layers", "clip", "lights", "camera", "image", "integration"});
   const Node list = document.at("layers", "give one at least: [{\"field\": {\"file\": ...}}]");
   if (list.array_size() == 0) list.fail("is empty; give one layer at least");
-  std::vector<LayerDescription> layers;
-  for (std::size_t i = 0; i < list.array_size(); ++i) {
-    layers.push_back(read_layer(list.element(i), folder));
-  }
-  return layers;
+  return scene_json::list_of(list, [&](const Node& node) { return read_layer(node, folder); });
 }
 
 /// Returns the object that stands alone, or under its name in a document of its own with `others`.
@@ -231,16 +171,12 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
   if (const auto lights = document.find("lights")) scene.lights = scene_json::lights(*lights);
   if (const auto image = document.find("image")) {
     image->expect_object({"width", "height", "samples", "background", "backdrop"});
-    constexpr int largest_size = 65536;
-    if (const auto width = image->find("width")) {
-      scene.size.width = static_cast<int>(width->integer(1, largest_size));
-    }
-    if (const auto height = image->find("height")) {
-      scene.size.height = static_cast<int>(height->integer(1, largest_size));
-    }
-    if (const auto samples = image->find("samples")) {
-      scene.samples = static_cast<int>(samples->integer(1, largest_samples));
-    }
+    const auto read = [&](const char* key, int& value, int largest) {
+      if (const auto node = image->find(key)) value = static_cast<int>(node->integer(1, largest));
+    };
+    read("width", scene.size.width, 65536);
+    read("height", scene.size.height, 65536);
+    read("samples", scene.samples, largest_samples);
     if (const auto background = image->find("background")) {
       scene.is_transparent = background->is_null();
       if (!background->is_null()) scene.background = scene_json::background(*background);
@@ -253,7 +189,7 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
     scene.camera = camera_from(*camera, scene.size);
   }
   if (const auto integration = document.find("integration")) {
-    read_integration(*integration, scene.integration);
+    scene.integration = scene_json::read_fields<Integration>(*integration);
   }
   return scene;
 }

@@ -45,22 +45,24 @@ void complete_description(const Layer& layer, LayerDescription& description) {
   }
 }
 
+void visit_sources(LayerDescription& layer, const std::function<void(FieldSource&)>& visit) {
+  visit(layer.field);
+  for (ChannelSource& channel : layer.channels) {
+    if (auto* field = std::get_if<FieldSource>(&channel.source)) visit(*field);
+  }
+  if (layer.labels) visit(layer.labels->field);
+  if (layer.mask) visit(layer.mask->field);
+}
+
 void visit_paths(SceneDescription& description,
                  const std::function<void(std::filesystem::path&)>& visit) {
   for (LayerDescription& layer : description.layers) {
-    visit(layer.field.file);
+    visit_sources(layer, [&](FieldSource& field) { visit(field.file); });
     if (layer.mesh) {
       visit(layer.mesh->file);
       visit(layer.mesh->options.q);
     }
-    for (ChannelSource& channel : layer.channels) {
-      if (auto* field = std::get_if<FieldSource>(&channel.source)) visit(field->file);
-    }
-    if (layer.labels) {
-      visit(layer.labels->field.file);
-      visit(layer.labels->table);
-    }
-    if (layer.mask) visit(layer.mask->field.file);
+    if (layer.labels) visit(layer.labels->table);
   }
   visit(description.backdrop);
 }

@@ -6,7 +6,6 @@
 
 #include "axes/array_axes.h"
 #include "pellucid/scene/builtin_fields.h"
-#include "pellucid/scene/error.h"
 #include "scene_json_parts.h"
 #include "text/printable.h"
 
@@ -75,34 +74,29 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
     type->one_of({"u8", "i8", "u16", "i16", "u32", "i32", "u64", "i64", "f16", "f32", "f64"});
     source.options.type = type->string();
   }
-  if (const auto components = field.find("components")) {
-    source.options.components = static_cast<int>(components->integer(1, largest_grid));
-  }
-  if (const auto array = field.find("array")) {
-    if (array->string().empty()) array->fail("is empty; give the name of an array of the file");
-    source.options.array = array->string();
-  }
-  if (const auto axes = field.find("axes")) {
-    try {
-      source.options.axes = checked_axes(axes->string());
-    } catch (const Error& error) {
-      axes->fail(error.what());
+  const auto whole = [&](const char* key, std::optional<int>& to, int least) {
+    if (const auto node = field.find(key)) {
+      to = static_cast<int>(node->integer(least, largest_grid));
     }
+  };
+  const auto text = [&](const char* key, std::optional<std::string>& to, const char* hint) {
+    const auto node = field.find(key);
+    if (node && node->string().empty()) node->fail(std::string("is empty; ") + hint);
+    if (node) to = node->string();
+  };
+  whole("components", source.options.components, 1);
+  text("array", source.options.array, "give the name of an array of the file");
+  if (const auto axes = field.find("axes")) {
+    source.options.axes = checked(*axes, [&] { return checked_axes(axes->string()); });
   }
   if (const auto time = field.find("time")) source.options.time = time->number();
   if (const auto component = field.find("component"); component && component->is_string()) {
-    if (component->string().empty()) component->fail("is empty; give its number or its name");
-    source.options.component_name = component->string();
-  } else if (component) {
-    source.options.component = static_cast<int>(component->integer(0, largest_grid));
+    text("component", source.options.component_name, "give its number or its name");
+  } else {
+    whole("component", source.options.component, 0);
   }
-  if (const auto level = field.find("level")) {
-    source.options.level = static_cast<int>(level->integer(0, largest_grid));
-  }
-  if (const auto series = field.find("series")) {
-    if (series->string().empty()) series->fail("is empty; give the series' number or its UID");
-    source.options.series = series->string();
-  }
+  whole("level", source.options.level, 0);
+  text("series", source.options.series, "give the series' number or its UID");
   if (const auto order = field.find("byte_order")) {
     source.options.big_endian = order->one_of({"little", "big"}) == 1;
   }
@@ -195,15 +189,9 @@ std::vector<ChannelSource> channel_sources(const Node& list, const std::filesyst
   if (list.array_size() < 1 || list.array_size() > static_cast<std::size_t>(max_channels)) {
     list.fail("has " + std::to_string(list.array_size()) + " channels, but must have from 1 to 8");
   }
-  std::vector<ChannelSource> channels;
-  for (std::size_t i = 0; i < list.array_size(); ++i) {
-    channels.push_back(channel_source(list.element(i), folder));
-  }
-  try {
-    check_channel_sources(channels);
-  } catch (const Error& error) {
-    list.fail(error.what());
-  }
+  std::vector<ChannelSource> channels =
+      list_of(list, [&](const Node& node) { return channel_source(node, folder); });
+  checked(list, [&] { check_channel_sources(channels); });
   return channels;
 }
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pellucid/scene/error.h"
 #include "pellucid/scene/presets.h"
 #include "pellucid/scene/srgb.h"
 #include "scene_json_parts.h"
@@ -7,13 +6,59 @@
 namespace pellucid::scene_json {
 namespace {
 
-/// The members of a point that both kinds have, and the order of the values.
+/// A number of points of a function, with what messages say of it.
+struct Strength {
+  const char* name;
+  const char* hint;
+  double most;
+  const char* other = nullptr;  ///< the one in its place of another kind of points
+  const char* other_hint = "";
+  bool has_color = true;
+};
+constexpr Strength extinctions{
+    "extinction", "give the extinction per world length here", largest_number, "opacity",
+    "needs a \"unit_distance\" beside \"points\"; or give the extinction"};
+constexpr Strength opacities{
+    "opacity", "give the opacity of a layer as thick as unit_distance", 1, "extinction",
+    "stands in a function with a \"unit_distance\"; give the opacity instead, "
+    "in all points, or remove the unit_distance"};
+constexpr Strength factor_strength{
+    "factor", "give the factor of the extinction", largest_number, nullptr, "", false};
+
+/// Returns the points of a list; at least one. Their values do not descend; two equal ones make a
+/// jump.
 template <class Point>
-void read_place(const Node& node, bool srgb, std::vector<Point>& points) {
-  const Node value = node.at("value", "give the data value of this point");
-  const Rgb<double> color = color_of(node.at("color", "give [r, g, b]"), srgb);
-  add_value(value, points);
-  points.back().color = color;
+std::vector<Point> points_of(const Node& list, const Strength& kind, double Point::*strength,
+                             bool srgb) {
+  std::vector<std::string_view> keys{"value", kind.name};
+  if (kind.has_color) keys.emplace_back("color");
+  if (list.array_size() == 0) {
+    list.fail(std::string("is empty; give at least one point {value, ") + kind.name +
+              (kind.has_color ? ", color}" : "}"));
+  }
+  std::vector<Point> points;
+  for (std::size_t i = 0; i < list.array_size(); ++i) {
+    const Node node = list.element(i);
+    if (kind.other != nullptr && node.has(kind.other)) node.fail_at(kind.other, kind.other_hint);
+    node.expect_object(keys);
+    Point& point = points.emplace_back();
+    point.*strength = node.at(kind.name, kind.hint).number(0, kind.most);
+    const Node value = node.at("value", "give the data value of this point");
+    if (kind.has_color) point.color = color_of(node.at("color", "give [r, g, b]"), srgb);
+    point.value = value.number(-largest_value, largest_value);
+    if (i >= 1 && point.value < points[i - 1].value) {
+      value.fail("is below the value of the point before it; points must ascend");
+    }
+    if (i >= 2 && point.value == points[i - 2].value) {
+      value.fail("is the third equal value; two make a jump, remove the middle one");
+    }
+  }
+  return points;
+}
+
+/// Returns the function of points. What floats hold may be narrower than what is checked of them.
+TransferFunction function_of(const Node& list, std::vector<TransferFunction::Point> points) {
+  return checked(list, [&] { return TransferFunction(std::move(points)); });
 }
 
 void read_deviation(const Node& node, OpacityTable& table) {
@@ -24,25 +69,6 @@ void read_deviation(const Node& node, OpacityTable& table) {
   if (const auto color = node.find("color")) {
     table.color_deviation = color->number(0, largest_color_deviation);
   }
-}
-
-OpacityTable opacity_table(const Node& list, double unit_distance, bool srgb) {
-  OpacityTable table;
-  table.unit_distance = unit_distance;
-  for (std::size_t i = 0; i < list.array_size(); ++i) {
-    const Node point = list.element(i);
-    if (point.has("extinction")) {
-      point.fail_at("extinction",
-                    "stands in a function with a \"unit_distance\"; give the opacity instead, in "
-                    "all points, or remove the unit_distance");
-    }
-    point.expect_object({"value", "opacity", "color"});
-    const double opacity =
-        point.at("opacity", "give the opacity of a layer as thick as unit_distance").number(0, 1);
-    read_place(point, srgb, table.points);
-    table.points.back().opacity = opacity;
-  }
-  return table;
 }
 
 TransferFunctionDescription preset(const Node& function) {
@@ -76,34 +102,17 @@ bool is_srgb(const Node& function) {
 
 Rgb<double> color_of(const Node& node, bool srgb) {
   if (!srgb) return linear_rgb(node);
-  const auto [r, g, b] = three(node);
-  return srgb_to_linear(Rgb<double>{r.number(0, 1), g.number(0, 1), b.number(0, 1)});
+  return srgb_to_linear(linear_rgb(node, 1));
 }
 
 std::vector<TransferFunction::Point> extinction_points(const Node& list, bool srgb) {
-  if (list.array_size() == 0) {
-    list.fail("is empty; give at least one point {value, extinction, color}");
-  }
-  std::vector<TransferFunction::Point> points;
-  for (std::size_t i = 0; i < list.array_size(); ++i) {
-    const Node point = list.element(i);
-    if (point.has("opacity")) {
-      point.fail_at("opacity",
-                    "needs a \"unit_distance\" beside \"points\"; or give the extinction");
-    }
-    point.expect_object({"value", "extinction", "color"});
-    const double extinction = point.at("extinction", "give the extinction per world length here")
-                                  .number(0, scene_json::largest_number);
-    read_place(point, srgb, points);
-    points.back().extinction = extinction;
-  }
-  // What floats hold may be narrower than what is checked here (values that coincide in float).
-  try {
-    TransferFunction checked(points);
-  } catch (const Error& error) {
-    list.fail(error.what());
-  }
-  return points;
+  return function_of(list, points_of(list, extinctions, &TransferFunction::Point::extinction, srgb))
+      .points();
+}
+
+TransferFunction factors(const Node& list) {
+  return function_of(list,
+                     points_of(list, factor_strength, &TransferFunction::Point::extinction, false));
 }
 
 TransferFunctionDescription transfer_function(const Node& function) {
@@ -121,10 +130,9 @@ TransferFunctionDescription transfer_function(const Node& function) {
     }
     return extinction_points(list, srgb);
   }
-  if (list.array_size() == 0)
-    list.fail("is empty; give at least one point {value, opacity, color}");
-  OpacityTable table = opacity_table(
-      list, unit_distance->number(smallest_unit_distance, largest_unit_distance), srgb);
+  OpacityTable table;
+  table.unit_distance = unit_distance->number(smallest_unit_distance, largest_unit_distance);
+  table.points = points_of(list, opacities, &OpacityPoint::opacity, srgb);
   if (const auto deviation = function.find("deviation")) read_deviation(*deviation, table);
   return table;
 }

@@ -3,7 +3,6 @@
 #include <string>
 #include <utility>
 
-#include "pellucid/scene/error.h"
 #include "scene_json_parts.h"
 #include "text/printable.h"
 
@@ -89,22 +88,7 @@ ChannelTransferFunction table(const Node& node, bool srgb) {
 ChannelTransferFunction factor(const Node& node) {
   node.expect_object({"channel", "points"});
   ChannelRef channel = channel_of(node);
-  const Node list = node.at("points", "give an array of {value, factor}");
-  if (list.array_size() == 0) list.fail("is empty; give at least one point {value, factor}");
-  std::vector<TransferFunction::Point> points;
-  for (std::size_t i = 0; i < list.array_size(); ++i) {
-    const Node point = list.element(i);
-    point.expect_object({"value", "factor"});
-    add_value(point.at("value", "give the data value of this point"), points);
-    points.back().extinction =
-        point.at("factor", "give the factor of the extinction").number(0, largest_number);
-  }
-  // What floats hold may be narrower than what is checked here.
-  try {
-    return {std::move(channel), TransferFunction(std::move(points))};
-  } catch (const Error& error) {
-    list.fail(error.what());
-  }
+  return {std::move(channel), factors(node.at("points", "give an array of {value, factor}"))};
 }
 
 /// Checks the numbers, as far as the Gaussian alone can tell.
@@ -113,11 +97,7 @@ void check(const Node& node, const GaussianPrimitive& gaussian) {
   alone.channels.clear();
   std::vector<std::string> channels;
   for (std::size_t i = 0; i < alone.center.size(); ++i) channels.push_back(std::to_string(i));
-  try {
-    make_multivariate({{}, {std::move(alone)}, {}}, channels);
-  } catch (const Error& error) {
-    node.fail(error.what());
-  }
+  checked(node, [&] { make_multivariate({{}, {std::move(alone)}, {}}, channels); });
 }
 
 }  // namespace

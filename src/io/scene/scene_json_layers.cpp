@@ -2,7 +2,7 @@
 #include <string>
 #include <utility>
 
-#include "pellucid/scene/error.h"
+#include "read_fields.h"
 #include "scene_json_parts.h"
 
 namespace pellucid::scene_json {
@@ -30,31 +30,12 @@ Clip clip_of(const Node& node) {
   node.expect_object({"plane", "box", "sphere", "cylinder", "keep"});
   Clip clip;
   int shapes = 0;
-  const auto shape = [&](const char* key, const std::vector<std::string_view>& keys) {
-    auto found = node.find(key);
-    if (found) {
-      found->expect_object(keys);
-      ++shapes;
-    }
-    return found;
-  };
-  if (const auto plane = shape("plane", {"point", "normal"})) {
-    clip.shape = ClipPlane{vector(plane->at("point", "give a point [x, y, z] of the plane")),
-                           vector(plane->at("normal", "give the direction of the kept side"))};
-  }
-  if (const auto box = shape("box", {"lower", "upper"})) {
-    clip.shape = ClipBox{vector(box->at("lower", "give the least corner [x, y, z]")),
-                         vector(box->at("upper", "give the largest corner [x, y, z]"))};
-  }
-  if (const auto sphere = shape("sphere", {"center", "radius"})) {
-    clip.shape = ClipSphere{vector(sphere->at("center", "give a point [x, y, z]")),
-                            sphere->at("radius", "give a length in the world").positive_number()};
-  }
-  if (const auto cylinder = shape("cylinder", {"start", "end", "radius"})) {
-    clip.shape =
-        ClipCylinder{vector(cylinder->at("start", "give the middle [x, y, z] of one end")),
-                     vector(cylinder->at("end", "give the middle [x, y, z] of the other end")),
-                     cylinder->at("radius", "give a length in the world").positive_number()};
+  for (std::size_t i = 0; i < std::size(scene_fields::clip_shapes); ++i) {
+    const auto found = node.find(scene_fields::clip_shapes[i]);
+    if (!found) continue;
+    clip.shape = scene_fields::alternative<decltype(Clip::shape)>(i);
+    std::visit([&](auto& shape) { shape = read_fields(*found, shape); }, clip.shape);
+    ++shapes;
   }
   if (shapes != 1) {
     node.fail("needs one of \"plane\", \"box\", \"sphere\" and \"cylinder\"");
@@ -62,11 +43,7 @@ Clip clip_of(const Node& node) {
   if (const auto keep = node.find("keep")) {
     clip.keep_inside = keep->one_of({"inside", "outside"}) == 0;
   }
-  try {
-    check_clip(clip, "clip");
-  } catch (const Error& error) {
-    node.fail(error.what());
-  }
+  checked(node, [&] { check_clip(clip, "clip"); });
   return clip;
 }
 
@@ -86,15 +63,9 @@ LabelSource label_source(const Node& labels, const std::filesystem::path& folder
     return source;
   }
   const bool srgb = is_srgb(labels);
-  for (std::size_t i = 0; i < colors->array_size(); ++i) {
-    source.styles.push_back(label_style(colors->element(i), srgb));
-  }
+  source.styles = list_of(*colors, [&](const Node& node) { return label_style(node, srgb); });
   if (source.styles.empty()) colors->fail("is empty; give one label at least");
-  try {
-    const LabelTable checked(source.styles);
-  } catch (const Error& error) {
-    colors->fail(error.what());
-  }
+  checked(*colors, [&] { return LabelTable(source.styles); });
   return source;
 }
 
@@ -123,9 +94,7 @@ MaskSource mask_source(const Node& mask, const std::filesystem::path& folder) {
 }
 
 std::vector<Clip> clips(const Node& list) {
-  std::vector<Clip> clips;
-  for (std::size_t i = 0; i < list.array_size(); ++i) clips.push_back(clip_of(list.element(i)));
-  return clips;
+  return list_of(list, clip_of);
 }
 
 Affine<double> affine_map(const Node& rows) {

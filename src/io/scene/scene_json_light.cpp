@@ -5,44 +5,42 @@
 #include <string>
 #include <utility>
 
-#include "pellucid/scene/error.h"
+#include "read_fields.h"
 #include "scene_json_parts.h"
 #include "text/printable.h"
 
 namespace pellucid::scene_json {
+
+using scene_fields::alternative;
+using scene_fields::light_kinds;
+using scene_fields::visit_fields;
+
 namespace {
 
-constexpr double largest_strength = 1e3;
-constexpr double largest_light = 1e6;
-
-Rgb<double> light_color(const Node& node) {
-  const auto [r, g, b] = three(node);
-  return {r.number(0, largest_light), g.number(0, largest_light), b.number(0, largest_light)};
-}
-
-Vec3<double> direction(const Node& node) {
-  const Vec3<double> v = vector(node);
-  if (!(std::hypot(v.x, v.y, v.z) > 0)) node.fail("has no length; give a direction [x, y, z]");
-  return v;
+/// Fails for keys of other kinds of lights.
+void refuse_other_kinds(const Node& node, std::size_t kind) {
+  for (std::size_t other = 0; other < std::size(light_kinds); ++other) {
+    if (other == kind) continue;
+    std::visit(
+        [&](const auto& light) {
+          for (const std::string_view key : keys_of(light)) {
+            if (!node.has(key)) continue;
+            node.fail_at(key, std::string("makes no sense for a ") + light_kinds[kind] +
+                                  " light; remove it");
+          }
+        },
+        alternative<decltype(Light::kind)>(other));
+  }
 }
 
 Light light(const Node& node) {
   node.expect_object({"type", "direction", "position", "color"});
-  constexpr std::array types{"head", "directional", "point"};
-  const std::size_t type = node.at("type", "give \"head\", \"directional\" or \"point\"")
-                               .one_of({types.begin(), types.end()});
-  for (const auto& [key, of] : {std::pair{"direction", 1U}, std::pair{"position", 2U}}) {
-    if (type == of || !node.has(key)) continue;
-    node.fail_at(key, std::string("makes no sense for a ") + types[type] + " light; remove it");
-  }
-  Light light;
-  if (type == 1) {
-    light.kind = DirectionalLight{
-        direction(node.at("direction", "give [x, y, z], the way in which the light shines"))};
-  } else if (type == 2) {
-    light.kind = PointLight{vector(node.at("position", "give a point [x, y, z] of the world"))};
-  }
-  if (const auto color = node.find("color")) light.color = light_color(*color);
+  const std::size_t kind = node.at("type", "give \"head\", \"directional\" or \"point\"")
+                               .one_of({std::begin(light_kinds), std::end(light_kinds)});
+  refuse_other_kinds(node, kind);
+  Light light{alternative<decltype(Light::kind)>(kind)};
+  std::visit([&](auto& one) { visit_fields(one, FieldReader(node)); }, light.kind);
+  visit_fields(light, FieldReader(node));
   return light;
 }
 
@@ -52,49 +50,14 @@ GradientOpacity::Point gradient_point(const Node& node) {
           node.at("factor", "give the factor of the extinction").number(0, largest_number)};
 }
 
-/// Reads the colors of a surface: a function of one variable.
-template <class Surface>
-void read_colors(const Node& node, Surface& surface) {
-  TransferFunctionDescription function = transfer_function(node);
-  if (std::holds_alternative<MultivariateDescription>(function)) {
-    node.fail("is of several variables, but colors are of one; give \"points\" or a \"preset\"");
-  }
-  if (const auto* points = std::get_if<std::vector<TransferFunction::Point>>(&function)) {
-    surface.colors = std::make_shared<const TransferFunction>(*points);
-  } else {
-    surface.written_colors =
-        std::make_shared<const TransferFunctionDescription>(std::move(function));
-  }
-}
-
 Isosurface isosurface(const Node& node) {
-  node.expect_object({"value", "color", "opacity", "channel", "colors", "color_channel"});
-  Isosurface surface;
-  surface.value =
-      node.at("value", "give the data value of the surface").number(-largest_value, largest_value);
-  if (const auto opacity = node.find("opacity")) surface.opacity = opacity->number(0, 1);
-  if (const auto color = node.find("color")) {
-    if (node.has("colors")) color->fail("stands beside \"colors\"; give one of the two");
-    surface.color = light_color(*color);
-  }
-  if (const auto function = node.find("colors")) read_colors(*function, surface);
-  if (const auto channel = node.find("channel")) surface.channel = channel_name(*channel);
-  if (const auto channel = node.find("color_channel")) {
-    if (!node.has("colors")) channel->fail("needs \"colors\" beside it");
-    surface.color_channel = channel_name(*channel);
+  Isosurface surface = read_fields<Isosurface>(node);
+  if (node.has("colors")) {
+    if (node.has("color")) node.fail_at("color", "stands beside \"colors\"; give one of the two");
+  } else if (node.has("color_channel")) {
+    node.fail_at("color_channel", "needs \"colors\" beside it");
   }
   return surface;
-}
-
-Slice slice(const Node& node) {
-  node.expect_object({"point", "normal", "opacity", "colors", "channel"});
-  Slice slice;
-  slice.point = vector(node.at("point", "give a point [x, y, z] of the plane"));
-  slice.normal = direction(node.at("normal", "give a direction [x, y, z] across the plane"));
-  if (const auto opacity = node.find("opacity")) slice.opacity = opacity->number(0, 1);
-  if (const auto function = node.find("colors")) read_colors(*function, slice);
-  if (const auto channel = node.find("channel")) slice.channel = channel_name(*channel);
-  return slice;
 }
 
 /// Fails unless the keys of an object that name channels name some of the layer.
@@ -136,37 +99,39 @@ void refuse_look(const Node& node, const LayerDescription& layer) {
 
 }  // namespace
 
+const MultivariateDescription* multivariate_of(const LayerDescription& layer) {
+  const auto& function = layer.transfer_function;
+  return function ? std::get_if<MultivariateDescription>(&*function) : nullptr;
+}
+
 std::vector<Light> lights(const Node& list) {
-  std::vector<Light> lights;
-  for (std::size_t i = 0; i < list.array_size(); ++i) lights.push_back(light(list.element(i)));
-  return lights;
+  return list_of(list, light);
+}
+
+Vec3<double> direction(const Node& node) {
+  const Vec3<double> v = vector(node);
+  if (!(std::hypot(v.x, v.y, v.z) > 0)) node.fail("has no length; give a direction [x, y, z]");
+  return v;
+}
+
+void read_colors(const Node& node, std::shared_ptr<const TransferFunction>& colors,
+                 std::shared_ptr<const TransferFunctionDescription>& written) {
+  TransferFunctionDescription function = transfer_function(node);
+  if (std::holds_alternative<MultivariateDescription>(function)) {
+    node.fail("is of several variables, but colors are of one; give \"points\" or a \"preset\"");
+  }
+  if (const auto* points = std::get_if<std::vector<TransferFunction::Point>>(&function)) {
+    colors = std::make_shared<const TransferFunction>(*points);
+  } else {
+    written = std::make_shared<const TransferFunctionDescription>(std::move(function));
+  }
 }
 
 Shading shading(const Node& node) {
-  node.expect_object({"ambient", "diffuse", "specular", "power", "gradient", "flatness",
-                      "flat_gradient", "channel"});
-  Shading shading;
-  const auto read = [&](const char* key, double least, double& value) {
-    if (const auto number = node.find(key)) value = number->number(least, largest_strength);
-  };
-  read("ambient", 0, shading.ambient);
-  read("diffuse", 0, shading.diffuse);
-  read("specular", 0, shading.specular);
-  read("power", 1, shading.power);
-  if (const auto flatness = node.find("flatness")) {
-    shading.flatness = flatness->number(0, largest_strength);
+  Shading shading = read_fields<Shading>(node);
+  if (shading.flatness && shading.flat_gradient) {
+    node.fail_at("flat_gradient", "stands beside a \"flatness\"; leave one of the two out");
   }
-  if (const auto gradient = node.find("flat_gradient")) {
-    if (shading.flatness) {
-      gradient->fail("stands beside a \"flatness\"; leave one of the two out");
-    }
-    shading.flat_gradient = gradient->number(0, 1e38);
-  }
-  if (const auto gradient = node.find("gradient")) {
-    shading.gradient = std::array{GradientKind::smooth,
-                                  GradientKind::field}[gradient->one_of({"smooth", "field"})];
-  }
-  if (const auto channel = node.find("channel")) shading.channel = channel_name(*channel);
   return shading;
 }
 
@@ -194,11 +159,9 @@ std::shared_ptr<const GradientOpacity> gradient_opacity(const Node& node) {
   ChannelRef variable;
   if (const auto channel = node.find("channel")) variable = channel_name(*channel);
   // What floats hold may be narrower than what is checked here.
-  try {
+  return checked(list, [&] {
     return std::make_shared<const GradientOpacity>(std::move(points), length, std::move(variable));
-  } catch (const Error& error) {
-    list.fail(error.what());
-  }
+  });
 }
 
 void read_look(const Node& node, LayerDescription& layer) {
@@ -211,10 +174,7 @@ void read_look(const Node& node, LayerDescription& layer) {
   if (const auto found = node.find("gradient_opacity")) {
     layer.gradient_opacity = gradient_opacity(*found);
     check(*found);
-    const auto* const function =
-        layer.transfer_function ? std::get_if<MultivariateDescription>(&*layer.transfer_function)
-                                : nullptr;
-    if (function != nullptr && function->factor) {
+    if (const auto* const function = multivariate_of(layer); function && function->factor) {
       node.fail_at("gradient_opacity",
                    "stands beside a \"factor\" of the function; leave one of the two out");
     }
@@ -233,11 +193,11 @@ void read_look(const Node& node, LayerDescription& layer) {
     }
   }
   if (const auto list = node.find("slices")) {
-    for (std::size_t i = 0; i < list->array_size(); ++i) {
-      const Node element = list->element(i);
-      layer.slices.push_back(slice(element));
+    layer.slices = list_of(*list, [&](const Node& element) {
+      Slice slice = read_fields<Slice>(element);
       check(element);
-    }
+      return slice;
+    });
   }
 }
 

@@ -13,6 +13,7 @@
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/presets.h"
 #include "scene_json_change.h"
+#include "scene_json_parts.h"
 
 namespace pellucid {
 namespace {
@@ -83,12 +84,6 @@ std::shared_ptr<const MultivariateTransferFunction> transparent_function(std::si
       std::vector<ChannelTransferFunction>{{0, TransferFunction({{0, 0, {0, 0, 0}}})}});
 }
 
-const MultivariateDescription* multivariate(const LayerDescription& description) {
-  return description.transfer_function
-             ? std::get_if<MultivariateDescription>(&*description.transfer_function)
-             : nullptr;
-}
-
 /// Returns the content of a loaded layer; null if there is no layer or it has other content.
 template <class Content>
 const Content* content_of(const Layer* loaded) {
@@ -120,7 +115,7 @@ std::shared_ptr<const Channels> channels_from(const std::vector<ChannelSource>& 
 ChannelsContent load_channels_content(const LayerDescription& description,
                                       const std::vector<ChannelSource>& sources,
                                       const Layer* loaded, const ParallelFor& parallel) {
-  const MultivariateDescription* const function = multivariate(description);
+  const MultivariateDescription* const function = scene_json::multivariate_of(description);
   const bool transparent = !description.transfer_function && description.shows_surfaces();
   if (function == nullptr && !transparent) {
     throw Error(description.transfer_function
@@ -161,7 +156,7 @@ MeshContent load_mesh_content(const LayerDescription& description, const Wanted&
                               MeshSource& mesh_used, std::optional<Look>& look) {
   MeshContent content;
   const std::vector<std::string> names = function_channels(description);
-  if (const MultivariateDescription* const function = multivariate(description)) {
+  if (const MultivariateDescription* const function = scene_json::multivariate_of(description)) {
     content.transfer_function = make_multivariate(*function, names, names);
   } else if (names.size() > 1 && !description.transfer_function && description.shows_surfaces()) {
     content.transfer_function = transparent_function(names.size());
@@ -240,11 +235,13 @@ LabelContent load_label_content(const LabelSource& source, const Layer* loaded) 
   return content;
 }
 
-/// Returns the colors of a surface as written, which are a preset or an opacity table.
+/// Returns the colors of a surface as written, which are a preset or an opacity table; null: grey
+/// over the range of the data.
 template <class Data>
-TransferFunction made_colors(const TransferFunctionDescription& written, const Data& data) {
-  const auto* const table = std::get_if<OpacityTable>(&written);
-  if (table == nullptr) return function_of(written, Wanted{}, data);
+TransferFunction made_colors(const TransferFunctionDescription* written, const Data& data) {
+  if (written == nullptr) return grey_colors(data);
+  const auto* const table = std::get_if<OpacityTable>(written);
+  if (table == nullptr) return function_of(*written, Wanted{}, data);
   std::vector<TransferFunction::Point> points;
   for (const OpacityPoint& point : table->points) points.push_back({point.value, 0, point.color});
   return {std::move(points), 0.0, table->color_deviation};
@@ -288,11 +285,13 @@ class LookLoader {
 
   void operator()() const {
     visit_channels(layer_, [&](ChannelRef& channel, const char* what) { resolve(channel, what); });
-    for (Isosurface& surface : layer_.isosurfaces) make_colors(surface, surface.color_channel);
-    const bool is_field = std::holds_alternative<VolumeContent>(layer_.content);
+    for (Isosurface& surface : layer_.isosurfaces) {
+      if (surface.written_colors) make_colors(surface, surface.color_channel);
+    }
+    // Those of one variable have the colors of its function.
+    const bool of_one = is_of_one_variable();
     for (Slice& slice : layer_.slices) {
-      make_colors(slice, slice.channel);
-      if (!slice.colors && !is_field) slice.colors = grey(slice.channel);
+      if (slice.written_colors || (!slice.colors && !of_one)) make_colors(slice, slice.channel);
     }
   }
 
@@ -307,39 +306,30 @@ class LookLoader {
                 "\", which is not there; there are: " + list);
   }
 
-  template <class Surface>
-  void make_colors(Surface& surface, int channel) const {
-    if (!surface.written_colors) return;
-    surface.colors = of_data(
-        channel, [&](const auto& data) { return made_colors(*surface.written_colors, data); });
-    // A preset is made for good; the tolerance of a table may change.
-    if (!std::holds_alternative<OpacityTable>(*surface.written_colors)) {
-      surface.written_colors.reset();
-    }
-  }
-  /// Null for a slice of a mesh with a function of one variable, which has that function's.
-  std::shared_ptr<const TransferFunction> grey(int channel) const {
+  bool is_of_one_variable() const {
     const auto* const mesh = std::get_if<MeshContent>(&layer_.content);
-    if (mesh != nullptr && mesh->univariate() != nullptr) return nullptr;
-    return of_data(channel, [](const auto& data) { return grey_colors(data); });
+    return std::holds_alternative<VolumeContent>(layer_.content) ||
+           (mesh != nullptr && mesh->univariate() != nullptr);
   }
 
-  /// Returns what `make` makes of a channel; null for labels.
-  template <class Make>
-  std::shared_ptr<const TransferFunction> of_data(int channel, const Make& make) const {
-    const auto made = [&](const auto& data) {
-      return std::make_shared<const TransferFunction>(make(data));
+  /// A preset is made for good; an opacity table stays as it is written.
+  template <class Surface>
+  void make_colors(Surface& surface, int channel) const {
+    const auto make = [&](const auto& data) {
+      surface.colors =
+          std::make_shared<const TransferFunction>(made_colors(surface.written_colors.get(), data));
     };
     if (const auto* volume = std::get_if<VolumeContent>(&layer_.content)) {
-      return made(*volume->volume);
+      make(*volume->volume);
+    } else if (const auto* channels = std::get_if<ChannelsContent>(&layer_.content)) {
+      make(*(*channels->channels)[channel].volume);
+    } else if (const auto* mesh = std::get_if<MeshContent>(&layer_.content)) {
+      make(channel == 0 ? *mesh->mesh
+                        : MeshChannels(mesh->mesh->shared_mesh(), {(*mesh->mesh)[channel]}));
     }
-    if (const auto* channels = std::get_if<ChannelsContent>(&layer_.content)) {
-      return made(*(*channels->channels)[channel].volume);
+    if (surface.written_colors && !std::holds_alternative<OpacityTable>(*surface.written_colors)) {
+      surface.written_colors.reset();
     }
-    const auto* const mesh = std::get_if<MeshContent>(&layer_.content);
-    if (mesh == nullptr) return nullptr;
-    return made(channel == 0 ? *mesh->mesh
-                             : MeshChannels(mesh->mesh->shared_mesh(), {(*mesh->mesh)[channel]}));
   }
 
   Layer& layer_;
@@ -387,7 +377,7 @@ Layer load_layer(const LayerDescription& description, const Wanted& wanted, cons
 std::vector<ChannelSource> layer_channels(const LayerDescription& description) {
   if (description.mesh || description.labels) return {};
   if (!description.channels.empty()) return description.channels;
-  const MultivariateDescription* const function = multivariate(description);
+  const MultivariateDescription* const function = scene_json::multivariate_of(description);
   if (function == nullptr) return {};
   std::vector<ChannelSource> channels{{std::string(field_channel), "", description.field}};
   for (const auto kind : made_of_field) {

@@ -2,7 +2,6 @@
 #include <string>
 #include <vector>
 
-#include "pellucid/scene/error.h"
 #include "scene_json_parts.h"
 
 namespace pellucid::scene_json {
@@ -31,14 +30,10 @@ std::vector<MeshArrayChoice> array_choices(const Node& list) {
   if (count < 1 || count > static_cast<std::size_t>(max_channels)) {
     list.fail("has " + std::to_string(count) + " channels, but must have from 1 to 8");
   }
-  std::vector<MeshArrayChoice> choices;
-  choices.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Node entry = list.element(i);
+  return list_of(list, [](const Node& entry) {
     entry.expect_object({"name", "array", "component"});
-    choices.push_back(array_choice(entry));
-  }
-  return choices;
+    return array_choice(entry);
+  });
 }
 
 }  // namespace
@@ -61,11 +56,7 @@ MeshSource mesh_source(const Node& mesh, const std::filesystem::path& folder) {
   } else if (mesh.has("component")) {
     mesh.fail_at("component", "is of no array; give its \"array\" too");
   }
-  try {
-    check_mesh_source(source);
-  } catch (const Error& error) {
-    mesh.fail(error.what());
-  }
+  checked(mesh, [&] { check_mesh_source(source); });
   return source;
 }
 

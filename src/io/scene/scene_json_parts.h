@@ -8,16 +8,35 @@
 #include <vector>
 
 #include "pellucid/io/scene_json.h"
+#include "pellucid/scene/error.h"
 #include "text/json_document.h"
 
 namespace pellucid::scene_json {
 
+/// Returns what `read` makes of each element of an array.
+template <class Read>
+auto list_of(const Node& list, const Read& read) {
+  std::vector<decltype(read(list))> made;
+  for (std::size_t i = 0; i < list.array_size(); ++i) made.push_back(read(list.element(i)));
+  return made;
+}
+/// Returns what `make` returns. An Error of it becomes one about the node.
+template <class Make>
+auto checked(const Node& node, const Make& make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    node.fail(error.what());
+  }
+}
 /// Returns the elements of an array of three.
 std::array<Node, 3> three(const Node& node);
 /// [x, y, z].
 Vec3<double> vector(const Node& node);
-/// [r, g, b], each 0 or more.
-Rgb<double> linear_rgb(const Node& node);
+/// [x, y, z] of a length above 0.
+Vec3<double> direction(const Node& node);
+/// [r, g, b], each from 0 to `most`.
+Rgb<double> linear_rgb(const Node& node, double most = largest_number);
 Background background(const Node& node);
 /// From 1 to 8 numbers.
 std::vector<double> numbers(const Node& list, double lower = -largest_value);
@@ -46,22 +65,19 @@ bool is_srgb(const Node& function);
 Rgb<double> color_of(const Node& node, bool srgb);
 /// Returns the points of a piecewise-linear function; at least one.
 std::vector<TransferFunction::Point> extinction_points(const Node& list, bool srgb);
-/// Adds a point at the value, which does not descend; two equal ones make a jump.
-template <class Point>
-void add_value(const Node& value, std::vector<Point>& points) {
-  const std::size_t i = points.size();
-  points.push_back({value.number(-largest_value, largest_value), 0, {}});
-  if (i >= 1 && points[i].value < points[i - 1].value) {
-    value.fail("is below the value of the point before it; points must ascend");
-  }
-  if (i >= 2 && points[i].value == points[i - 2].value) {
-    value.fail("is the third equal value; two make a jump, remove the middle one");
-  }
-}
+/// Returns the points {value, factor} of a factor of the extinction, with factors in the place of
+/// extinctions.
+TransferFunction factors(const Node& list);
 TransferFunctionDescription transfer_function(const Node& function);
+/// Reads the colors of a surface, a function of one variable: points as `colors`, others as
+/// `written`.
+void read_colors(const Node& node, std::shared_ptr<const TransferFunction>& colors,
+                 std::shared_ptr<const TransferFunctionDescription>& written);
 /// The names of channels that it uses are not looked up.
 MultivariateDescription multivariate(const Node& function);
 
+/// Returns the layer's function of several channels; null: it has none.
+const MultivariateDescription* multivariate_of(const LayerDescription& layer);
 std::vector<Light> lights(const Node& list);
 /// The names of channels that these use are not looked up.
 Shading shading(const Node& node);

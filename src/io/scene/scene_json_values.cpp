@@ -20,10 +20,9 @@ Vec3<double> vector(const Node& node) {
   return {x.number(), y.number(), z.number()};
 }
 
-Rgb<double> linear_rgb(const Node& node) {
+Rgb<double> linear_rgb(const Node& node, double most) {
   const auto [r, g, b] = three(node);
-  const double largest = scene_json::largest_number;
-  return {r.number(0, largest), g.number(0, largest), b.number(0, largest)};
+  return {r.number(0, most), g.number(0, most), b.number(0, most)};
 }
 
 Background background(const Node& node) {
@@ -45,11 +44,7 @@ void expect_size(const Node& list, std::size_t least, std::size_t most, const st
 }
 
 std::vector<double> numbers_of(const Node& list, double lower) {
-  std::vector<double> values;
-  for (std::size_t i = 0; i < list.array_size(); ++i) {
-    values.push_back(list.element(i).number(lower, largest_value));
-  }
-  return values;
+  return list_of(list, [&](const Node& node) { return node.number(lower, largest_value); });
 }
 
 }  // namespace
@@ -61,13 +56,10 @@ std::vector<double> numbers(const Node& list, double lower) {
 
 std::vector<std::vector<double>> matrix(const Node& rows, std::size_t columns) {
   expect_size(rows, 1, max_channels, "rows");
-  std::vector<std::vector<double>> values;
-  for (std::size_t i = 0; i < rows.array_size(); ++i) {
-    const Node row = rows.element(i);
+  return list_of(rows, [&](const Node& row) {
     expect_size(row, columns, columns, "numbers, one for each channel");
-    values.push_back(numbers_of(row, -largest_value));
-  }
-  return values;
+    return numbers_of(row, -largest_value);
+  });
 }
 
 std::string channel_name(const Node& node) {

@@ -9,6 +9,7 @@
 
 #include "pellucid/io/scene_json.h"
 #include "pellucid/scene/error.h"
+#include "scene_fields.h"
 
 namespace pellucid {
 namespace {
@@ -59,31 +60,51 @@ std::string background_text(const Background& background) {
                  ", \"bottom\": ", array(background.bottom, what), "}"});
 }
 
-/// The members of an object, one per line.
+/// Returns an array of what `text` makes of each element, one per line behind an indent.
+template <class List, class Text>
+std::string lines_of(const List& list, const std::string& indent, const Text& text) {
+  std::string lines;
+  for (const auto& element : list) {
+    lines += joined({lines.empty() ? "[" : ",", "\n", indent, "    ", text(element)});
+  }
+  return joined({lines, "\n", indent, "  ]"});
+}
+/// Returns the same on one line.
+template <class List, class Text>
+std::string list_of(const List& list, const Text& text) {
+  std::string line;
+  for (const auto& element : list) line += joined({line.empty() ? "[" : ", ", text(element)});
+  return line + "]";
+}
+
+/// The members of an object, one per line, or without an indent all on one.
 class Members {
  public:
-  explicit Members(std::string_view indent) : indent_(indent) {}
+  Members() = default;
+  explicit Members(std::string_view indent)
+      : indent_(indent),
+        first_(joined({"{\n", indent_, "  "})),
+        next_(joined({",\n", indent_, "  "})),
+        end_(joined({"\n", indent_, "}"})) {}
 
   void add(std::string_view key, std::string_view value) {
-    text_ += joined({text_.empty() ? "{\n" : ",\n", indent_, "  \"", key, "\": ", value});
+    text_ += joined({text_.empty() ? first_ : next_, "\"", key, "\": ", value});
   }
-  std::string object() const { return joined({text_, "\n", indent_, "}"}); }
+  std::string object() const { return text_ + end_; }
+  const std::string& indent() const noexcept { return indent_; }
 
  private:
-  std::string indent_, text_;
+  std::string indent_, first_ = "{", next_ = ", ", end_ = "}", text_;
 };
 
 /// One point of a transfer function per line. `strength` is "extinction" or "opacity".
 template <class Point>
 std::string points_text(const std::vector<Point>& points, double Point::*strength,
                         std::string_view name, const std::string& indent) {
-  std::string list = "[";
-  for (const Point& p : points) {
-    list += joined({&p == points.data() ? "\n" : ",\n", indent, "    {\"value\": ",
-                    number(p.value, "a value"), ", \"", name, "\": ", number(p.*strength, name),
-                    ", \"color\": ", array(p.color, "a color"), "}"});
-  }
-  return joined({list, "\n", indent, "  ]"});
+  return lines_of(points, indent, [&](const Point& p) {
+    return joined({"{\"value\": ", number(p.value, "a value"), ", \"", name, "\": ",
+                   number(p.*strength, name), ", \"color\": ", array(p.color, "a color"), "}"});
+  });
 }
 
 std::string transfer_function_text(const std::vector<TransferFunction::Point>& points,
@@ -119,15 +140,11 @@ std::string transfer_function_text(const PresetDescription& preset, const std::s
 }
 
 std::string list(const std::vector<double>& numbers, std::string_view what) {
-  std::string text;
-  for (const double x : numbers) text += joined({text.empty() ? "[" : ", ", number(x, what)});
-  return text + "]";
+  return list_of(numbers, [&](double x) { return number(x, what); });
 }
 
 std::string list(const std::vector<std::vector<double>>& rows, std::string_view what) {
-  std::string text;
-  for (const auto& row : rows) text += joined({text.empty() ? "[" : ", ", list(row, what)});
-  return text + "]";
+  return list_of(rows, [&](const auto& row) { return list(row, what); });
 }
 
 std::string name_text(const ChannelRef& channel) {
@@ -135,11 +152,7 @@ std::string name_text(const ChannelRef& channel) {
 }
 
 std::string names_text(const std::vector<ChannelRef>& names) {
-  std::string text;
-  for (const ChannelRef& name : names) {
-    text += joined({text.empty() ? "[" : ", ", name_text(name)});
-  }
-  return text + "]";
+  return list_of(names, name_text);
 }
 
 void add_channel(std::string_view key, const ChannelRef& channel, Members& members) {
@@ -177,13 +190,11 @@ std::string table_text(const ChannelTransferFunction& table, const std::string& 
 std::string factor_text(const ChannelTransferFunction& factor, const std::string& indent) {
   Members members(indent);
   add_channel("channel", factor.channel, members);
-  std::string list;
-  for (const TransferFunction::Point& point : factor.function.points()) {
-    list += joined({list.empty() ? "[" : ",", "\n", indent,
-                    "    {\"value\": ", number(point.value, "a value"),
-                    ", \"factor\": ", number(point.extinction, "a factor"), "}"});
-  }
-  members.add("points", joined({list, "\n", indent, "  ]"}));
+  const auto text = [](const TransferFunction::Point& point) {
+    return joined({"{\"value\": ", number(point.value, "a value"),
+                   ", \"factor\": ", number(point.extinction, "a factor"), "}"});
+  };
+  members.add("points", lines_of(factor.function.points(), indent, text));
   return members.object();
 }
 
@@ -194,18 +205,12 @@ std::string transfer_function_text(const MultivariateDescription& function,
   if (!function.channels.empty())
     members.add("channels", names_text({function.channels.begin(), function.channels.end()}));
   if (!function.gaussians.empty()) {
-    std::string text;
-    for (const GaussianPrimitive& g : function.gaussians) {
-      text += joined({text.empty() ? "[" : ",", "\n", indent, "    ", gaussian_text(g)});
-    }
-    members.add("gaussians", joined({text, "\n", indent, "  ]"}));
+    members.add("gaussians", lines_of(function.gaussians, indent, gaussian_text));
   }
   if (!function.tables.empty()) {
-    std::string text;
-    for (const ChannelTransferFunction& table : function.tables) {
-      text += joined({text.empty() ? "[" : ", ", table_text(table, indent + "  ")});
-    }
-    members.add("tables", text + "]");
+    members.add("tables", list_of(function.tables, [&](const ChannelTransferFunction& table) {
+                  return table_text(table, indent + "  ");
+                }));
   }
   if (function.factor) members.add("factor", factor_text(*function.factor, indent + "  "));
   return members.object();
@@ -217,31 +222,49 @@ std::string transfer_function_text(const TransferFunctionDescription& descriptio
                     description);
 }
 
-std::string_view precision_name(Precision precision) {
-  switch (precision) {
-    case Precision::float32:
-      return "\"float\"";
-    case Precision::float64:
-      return "\"double\"";
-    case Precision::automatic:
-      break;
-  }
-  return "\"automatic\"";
-}
+/// Adds the fields of a part (scene_fields.h) to the members of an object.
+class FieldWriter {
+ public:
+  explicit FieldWriter(Members& members) : members_(&members) {}
 
-std::string camera_text(const Camera& camera, const std::string& indent) {
-  const bool perspective = camera.projection == Projection::perspective;
-  Members members(indent);
-  members.add("projection", perspective ? "\"perspective\"" : "\"orthographic\"");
-  members.add("position", array(camera.position, "the camera's position"));
-  members.add("focal_point", array(camera.focal_point, "the camera's focal point"));
-  members.add("up", array(camera.up, "the camera's up"));
-  if (perspective) {
-    members.add("vertical_angle", number(camera.vertical_angle, "the vertical angle"));
-  } else {
-    members.add("parallel_scale", number(camera.parallel_scale, "the parallel scale"));
+  template <class Member, class Kind>
+  void operator()(const scene_fields::Key& key, const Member& member, const Kind& kind) const {
+    if (!key.applies) return;
+    if constexpr (std::is_same_v<Kind, scene_fields::Channel>) {
+      add_channel(key.name, member, *members_);
+    } else if constexpr (std::is_same_v<Kind, scene_fields::Choice>) {
+      const char* const name = kind.names[static_cast<std::size_t>(member)];
+      members_->add(key.name, joined({"\"", name, "\""}));
+    } else if constexpr (std::is_same_v<Kind, scene_fields::Colors>) {
+      const std::string indent = members_->indent() + "  ";
+      if (member.written_colors) {
+        members_->add(key.name, transfer_function_text(*member.written_colors, indent));
+      } else if (member.colors) {
+        members_->add(key.name, transfer_function_text(member.colors->points(), indent));
+      }
+    } else if constexpr (std::is_same_v<Member, std::optional<double>>) {
+      if (member) members_->add(key.name, number(*member, kind.noun));
+    } else if constexpr (std::is_same_v<Member, double>) {
+      members_->add(key.name, number(member, kind.noun));
+    } else {
+      members_->add(key.name, array(member, kind.noun));
+    }
   }
+
+ private:
+  Members* members_;
+};
+
+/// Returns an object with the fields of a part, added to members that are there.
+template <class Part>
+std::string fields_text(const Part& part, Members members) {
+  scene_fields::visit_fields(part, FieldWriter(members));
   return members.object();
+}
+/// Returns the same with a line for each.
+template <class Part>
+std::string lines_text(const Part& part, const std::string& indent) {
+  return fields_text(part, Members(indent));
 }
 
 void add_field(const FieldSource& field, Members& members) {
@@ -300,14 +323,6 @@ std::string channel_text(const ChannelSource& channel, const std::string& indent
   return members.object();
 }
 
-std::string channels_text(const std::vector<ChannelSource>& channels, const std::string& indent) {
-  std::string list;
-  for (const ChannelSource& channel : channels) {
-    list += joined({list.empty() ? "[" : ", ", channel_text(channel, indent)});
-  }
-  return list + "]";
-}
-
 std::string array_choice_text(const MeshArrayChoice& choice) {
   std::string text = joined({"{\"name\": ", quoted(choice.name, "the name of a channel"),
                              ", \"array\": ", quoted(choice.array, "the name of an array")});
@@ -322,11 +337,7 @@ std::string mesh_text(const MeshSource& mesh, const std::string& indent) {
   if (mesh.options.time) members.add("time", number(*mesh.options.time, "the time"));
   if (!mesh.options.q.empty()) members.add("q", path_text(mesh.options.q, "the path of q"));
   if (!mesh.channels.empty()) {
-    std::string list;
-    for (const MeshArrayChoice& choice : mesh.channels) {
-      list += joined({list.empty() ? "[" : ",", "\n", indent, "    ", array_choice_text(choice)});
-    }
-    members.add("channels", joined({list, "\n", indent, "  ]"}));
+    members.add("channels", lines_of(mesh.channels, indent, array_choice_text));
   }
   return members.object();
 }
@@ -338,16 +349,14 @@ std::string labels_text(const LabelSource& labels, const std::string& indent) {
   if (!labels.table.empty()) members.add("table", path_text(labels.table, "the path of a table"));
   if (labels.extinction) members.add("extinction", number(*labels.extinction, "an extinction"));
   if (!labels.styles.empty()) {
-    std::string list;
-    for (const LabelStyle& style : labels.styles) {
-      list += joined({list.empty() ? "[" : ",", "\n", indent,
-                      "    {\"label\": ", std::to_string(style.label),
-                      style.name.empty() ? std::string()
-                                         : joined({", \"name\": ", quoted(style.name, "a name")}),
-                      ", \"color\": ", array(style.color, "a color"),
-                      ", \"extinction\": ", number(style.extinction, "an extinction"), "}"});
-    }
-    members.add("colors", joined({list, "\n", indent, "  ]"}));
+    members.add("colors", lines_of(labels.styles, indent, [](const LabelStyle& style) {
+                  return joined(
+                      {"{\"label\": ", std::to_string(style.label),
+                       style.name.empty() ? std::string()
+                                          : joined({", \"name\": ", quoted(style.name, "a name")}),
+                       ", \"color\": ", array(style.color, "a color"),
+                       ", \"extinction\": ", number(style.extinction, "an extinction"), "}"});
+                }));
   }
   return members.object();
 }
@@ -355,44 +364,22 @@ std::string labels_text(const LabelSource& labels, const std::string& indent) {
 std::string mask_text(const MaskSource& mask, const std::string& indent) {
   Members members(indent);
   add_field(mask.field, members);
-  std::string list;
-  for (const MaskSource::Choice& choice : mask.choices) {
-    Members one(indent + "  ");
-    one.add("label", std::to_string(choice.label));
-    one.add("transfer_function", transfer_function_text(choice.transfer_function, indent + "    "));
-    list += joined({list.empty() ? "[" : ", ", one.object()});
-  }
-  members.add("functions", list + "]");
+  members.add("functions", list_of(mask.choices, [&](const MaskSource::Choice& choice) {
+                Members one(indent + "  ");
+                one.add("label", std::to_string(choice.label));
+                one.add("transfer_function",
+                        transfer_function_text(choice.transfer_function, indent + "    "));
+                return one.object();
+              }));
   return members.object();
 }
 
-std::string shape_text(const ClipPlane& plane) {
-  return joined({"\"plane\": {\"point\": ", array(plane.point, "a point"),
-                 ", \"normal\": ", array(plane.normal, "a normal"), "}"});
-}
-std::string shape_text(const ClipBox& box) {
-  return joined({"\"box\": {\"lower\": ", array(box.lower, "a corner"),
-                 ", \"upper\": ", array(box.upper, "a corner"), "}"});
-}
-std::string shape_text(const ClipSphere& sphere) {
-  return joined({"\"sphere\": {\"center\": ", array(sphere.center, "a center"),
-                 ", \"radius\": ", number(sphere.radius, "a radius"), "}"});
-}
-std::string shape_text(const ClipCylinder& cylinder) {
-  return joined({"\"cylinder\": {\"start\": ", array(cylinder.start, "an end"),
-                 ", \"end\": ", array(cylinder.end, "an end"),
-                 ", \"radius\": ", number(cylinder.radius, "a radius"), "}"});
-}
-
-/// One clip per line.
-std::string clips_text(const std::vector<Clip>& clips, const std::string& indent) {
-  std::string list;
-  for (const Clip& clip : clips) {
-    list += joined({list.empty() ? "[" : ",", "\n", indent, "    {",
-                    std::visit([](const auto& shape) { return shape_text(shape); }, clip.shape),
-                    clip.keep_inside ? "" : ", \"keep\": \"outside\"", "}"});
-  }
-  return joined({list, "\n", indent, "  ]"});
+std::string clip_text(const Clip& clip) {
+  Members members;
+  const auto fields = [](const auto& shape) { return fields_text(shape, Members()); };
+  members.add(scene_fields::clip_shapes[clip.shape.index()], std::visit(fields, clip.shape));
+  if (!clip.keep_inside) members.add("keep", "\"outside\"");
+  return members.object();
 }
 
 std::string transform_text(const Affine<double>& map) {
@@ -408,109 +395,43 @@ std::string transform_text(const Affine<double>& map) {
 }
 
 std::string light_text(const Light& light) {
-  std::string text = "{\"type\": \"head\"";
-  if (const auto* directional = std::get_if<DirectionalLight>(&light.kind)) {
-    text = joined({"{\"type\": \"directional\", \"direction\": ",
-                   array(directional->direction, "a direction")});
-  } else if (const auto* point = std::get_if<PointLight>(&light.kind)) {
-    text = joined({"{\"type\": \"point\", \"position\": ", array(point->position, "a position")});
-  }
-  return joined({text, ", \"color\": ", array(light.color, "the color of a light"), "}"});
-}
-
-/// One light per line.
-std::string lights_text(const std::vector<Light>& lights) {
-  std::string list;
-  for (const Light& light : lights) {
-    list += joined({list.empty() ? "[" : ",", "\n    ", light_text(light)});
-  }
-  return list.empty() ? "[]" : list + "\n  ]";
-}
-
-std::string shading_text(const Shading& shading, const std::string& indent) {
-  Members members(indent);
-  members.add("ambient", number(shading.ambient, "a part of the shading"));
-  members.add("diffuse", number(shading.diffuse, "a part of the shading"));
-  members.add("specular", number(shading.specular, "a part of the shading"));
-  members.add("power", number(shading.power, "the power of the shading"));
-  members.add("gradient", joined({"\"", gradient_kind_name(shading.gradient), "\""}));
-  if (shading.flatness) {
-    members.add("flatness", number(*shading.flatness, "the flatness of the shading"));
-  }
-  if (shading.flat_gradient) {
-    members.add("flat_gradient",
-                number(*shading.flat_gradient, "the flat gradient of the shading"));
-  }
-  add_channel("channel", shading.channel, members);
+  Members members;
+  members.add("type", joined({"\"", scene_fields::light_kinds[light.kind.index()], "\""}));
+  const FieldWriter write(members);
+  std::visit([&](const auto& kind) { scene_fields::visit_fields(kind, write); }, light.kind);
+  scene_fields::visit_fields(light, write);
   return members.object();
 }
 
-/// Adds the colors of a surface as they are written. Returns whether it has some.
-template <class Surface>
-bool add_colors(const Surface& surface, const std::string& indent, Members& members) {
-  if (surface.written_colors) {
-    members.add("colors", transfer_function_text(*surface.written_colors, indent + "  "));
-  } else if (surface.colors) {
-    members.add("colors", transfer_function_text(surface.colors->points(), indent + "  "));
-  }
-  return surface.written_colors || surface.colors;
+std::string lights_text(const std::vector<Light>& lights) {
+  return lights.empty() ? "[]" : lines_of(lights, "", light_text);
 }
 
 /// One point per line.
 std::string gradient_opacity_text(const GradientOpacity& opacity, const std::string& indent) {
   Members members(indent);
-  std::string list;
-  for (const GradientOpacity::Point& point : opacity.points()) {
-    list += joined({list.empty() ? "[" : ",", "\n", indent,
-                    "    {\"gradient\": ", number(point.gradient, "a gradient"),
-                    ", \"factor\": ", number(point.factor, "a factor"), "}"});
-  }
-  members.add("points", joined({list, "\n", indent, "  ]"}));
+  members.add("points", lines_of(opacity.points(), indent, [](const GradientOpacity::Point& point) {
+                return joined({"{\"gradient\": ", number(point.gradient, "a gradient"),
+                               ", \"factor\": ", number(point.factor, "a factor"), "}"});
+              }));
   members.add("unit", opacity.unit() == GradientOpacity::Unit::voxel ? "\"voxel\"" : "\"world\"");
   add_channel("channel", opacity.channel(), members);
-  return members.object();
-}
-
-std::string isosurface_text(const Isosurface& surface, const std::string& indent) {
-  Members members(indent);
-  members.add("value", number(surface.value, "the value of an isosurface"));
-  if (add_colors(surface, indent, members)) {
-    add_channel("color_channel", surface.color_channel, members);
-  } else {
-    members.add("color", array(surface.color, "the color of an isosurface"));
-  }
-  members.add("opacity", number(surface.opacity, "the opacity of an isosurface"));
-  add_channel("channel", surface.channel, members);
-  return members.object();
-}
-
-std::string slice_text(const Slice& slice, const std::string& indent) {
-  Members members(indent);
-  members.add("point", array(slice.point, "the point of a slice"));
-  members.add("normal", array(slice.normal, "the normal of a slice"));
-  members.add("opacity", number(slice.opacity, "the opacity of a slice"));
-  add_colors(slice, indent, members);
-  add_channel("channel", slice.channel, members);
   return members.object();
 }
 
 /// `indent` is that of the keys.
 void add_look(LayerDescription layer, const std::string& indent, Members& members) {
   name_channels(layer);
-  if (layer.shading) members.add("shading", shading_text(*layer.shading, indent));
+  if (layer.shading) members.add("shading", lines_text(*layer.shading, indent));
   if (layer.gradient_opacity) {
     members.add("gradient_opacity", gradient_opacity_text(*layer.gradient_opacity, indent));
   }
-  const auto add_list = [&](const char* key, const auto& elements, auto&& text) {
+  const auto add_list = [&](const char* key, const auto& elements) {
     if (elements.empty()) return;
-    std::string list;
-    for (const auto& element : elements) {
-      list += joined({list.empty() ? "[" : ", ", text(element, indent)});
-    }
-    members.add(key, list + "]");
+    members.add(key, list_of(elements, [&](const auto& each) { return lines_text(each, indent); }));
   };
-  add_list("isosurfaces", layer.isosurfaces, isosurface_text);
-  add_list("slices", layer.slices, slice_text);
+  add_list("isosurfaces", layer.isosurfaces);
+  add_list("slices", layer.slices);
 }
 
 /// Returns whether it is a white head light alone, the default.
@@ -531,14 +452,16 @@ std::string layer_text(const LayerDescription& layer) {
   } else if (layer.channels.empty()) {
     members.add("field", field_text(layer.field, indent));
   } else {
-    members.add("channels", channels_text(layer.channels, indent));
+    members.add("channels", list_of(layer.channels, [&](const ChannelSource& channel) {
+                  return channel_text(channel, indent);
+                }));
   }
   if (layer.transfer_function) {
     members.add("transfer_function", transfer_function_text(*layer.transfer_function, indent));
   }
   if (layer.mask) members.add("mask", mask_text(*layer.mask, indent));
   if (!is_in_place(layer)) members.add("transform", transform_text(layer.transform));
-  if (!layer.clips.empty()) members.add("clip", clips_text(layer.clips, "    "));
+  if (!layer.clips.empty()) members.add("clip", lines_of(layer.clips, "    ", clip_text));
   if (layer.projection) {
     members.add("projection", joined({"\"", projection_name(*layer.projection), "\""}));
   }
@@ -588,27 +511,14 @@ std::string scene_to_json(const SceneDescription& scene) {
   if (!scene.backdrop.empty()) {
     image.add("backdrop", path_text(scene.backdrop, "the path of the backdrop"));
   }
-  Members integration("  ");
-  integration.add("method", joined({"\"", method_name(scene.integration.method), "\""}));
-  if (scene.integration.relative_tolerance) {
-    integration.add("relative_tolerance",
-                    number(*scene.integration.relative_tolerance, "the tolerance"));
-  } else {
-    integration.add("tolerance", number(scene.integration.tolerance, "the tolerance"));
-  }
-  integration.add("grade",
-                  scene.integration.grade == Grade::proved ? "\"proved\"" : "\"estimated\"");
-  integration.add("precision", precision_name(scene.integration.precision));
-  integration.add("step", number(scene.integration.step, "the step"));
-
   Members document("");
   document.add("pellucid", "2");
   document.add("layers", joined({layers, "\n  ]"}));
-  if (!scene.clips.empty()) document.add("clip", clips_text(scene.clips, ""));
+  if (!scene.clips.empty()) document.add("clip", lines_of(scene.clips, "", clip_text));
   if (!are_default(scene.lights)) document.add("lights", lights_text(scene.lights));
-  if (scene.camera) document.add("camera", camera_text(*scene.camera, "  "));
+  if (scene.camera) document.add("camera", lines_text(*scene.camera, "  "));
   document.add("image", image.object());
-  document.add("integration", integration.object());
+  document.add("integration", lines_text(scene.integration, "  "));
   return document.object() + "\n";
 }
 
@@ -638,7 +548,7 @@ std::string look_to_json(const LookDescription& look) {
   const std::string indent = "  ";
   Members members("");
   members.add("transfer_function", transfer_function_text(look.transfer_function, indent));
-  if (look.shading) members.add("shading", shading_text(*look.shading, indent));
+  if (look.shading) members.add("shading", lines_text(*look.shading, indent));
   if (look.gradient_opacity) {
     members.add("gradient_opacity", gradient_opacity_text(*look.gradient_opacity, indent));
   }
@@ -646,7 +556,7 @@ std::string look_to_json(const LookDescription& look) {
 }
 
 std::string camera_to_json(const Camera& camera) {
-  return camera_text(camera, "");
+  return lines_text(camera, "");
 }
 
 }  // namespace pellucid
