@@ -11,9 +11,9 @@
 #include <tuple>
 #include <vector>
 
-#include "kept.h"
-#include "pellucid/geometry/affine.h"
-#include "pellucid/scene/clip.h"
+#include "settings.h"
+#include "vtk_scene/ghost_cells.h"
+#include "vtk_scene/kept.h"
 
 class vtkDataSet;
 
@@ -24,28 +24,29 @@ bool is_grid(vtkDataSet& data);
 /// Returns the number of cells along each axis of an image or a rectilinear grid.
 std::array<int, 3> cells_along(vtkDataSet& data);
 
-/// The cells of a grid that are no ghosts.
-struct OwnCells {
-  std::array<int, 3> first{}, last{};  ///< of the box around them, in cells along each axis
-  vtkIdType count = 0;
-};
 /// Flags of ghosts, the time of their last change, and the sides of their grid in cells.
 using GhostRecipe =
     std::tuple<vtkSmartPointer<vtkUnsignedCharArray>, vtkMTimeType, std::array<int, 3>>;
 using KeptOwnCells = Kept<GhostRecipe, OwnCells>;
 
-/// Returns the planes around the cells of an image or a rectilinear grid that are its own, in the
-/// world; nothing if all are ghosts. The ghost cells outside of the planes (vtkGhostType:
-/// DUPLICATECELL) are another block's or another process's; they are there for values and gradients
-/// at the border. A face between cells belongs to those above it: planes lie 2^-20 of a cell below
-/// it, so that a surface in the face is shown once. Throws Error if the cells that are no ghosts do
-/// not fill a box.
-std::optional<std::vector<Clip>> clips_at_ghosts(vtkDataSet& data,
-                                                 const Affine<double>& world_from_data,
-                                                 KeptOwnCells& kept);
+/// Returns the ghost cells of an image or a rectilinear grid; none if it has no flags of cells. The
+/// data are asked for points as long as they live.
+std::optional<GhostCells> ghosts_of(vtkDataSet& data, KeptOwnCells& kept);
 
 /// Returns the box around the own cells of an image or a rectilinear grid, in the world of its
 /// data; invalid if all are ghosts.
 vtkBoundingBox own_bounds(vtkDataSet& data, KeptOwnCells& kept);
+
+/// Flags of the ghosts at points and of cells, null if there are none, and when they changed last.
+struct GhostTimes {
+  std::array<vtkSmartPointer<vtkUnsignedCharArray>, 2> flags;
+  std::array<vtkMTimeType, 2> times{};
+
+  bool operator==(const GhostTimes&) const = default;
+};
+GhostTimes ghost_times(vtkDataSet& data);
+/// Returns which values of an image or a rectilinear grid are hidden, as
+/// vtk_scene::hidden_places(). Throws Error.
+std::vector<bool> hidden_places(vtkDataSet& data, bool of_cells);
 
 }  // namespace pellucid::plugin

@@ -19,32 +19,23 @@
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/hidden_values.h"
 #include "vtk/module/vtk_values.h"
+#include "vtk_scene/placement.h"
 
 namespace pellucid::plugin {
 namespace {
 
-GridPlacement placement_of(vtkImageData& image, bool of_cells) {
-  GridPlacement placement;
-  double origin[3], spacing[3];
-  int extent[6];
-  image.GetOrigin(origin);
-  image.GetSpacing(spacing);
-  image.GetExtent(extent);
-  placement.origin = {origin[0], origin[1], origin[2]};
+ImageSettings settings_of(vtkImageData& image) {
+  ImageSettings made;
+  const double *const origin = image.GetOrigin(), *const spacing = image.GetSpacing();
+  made.origin = {origin[0], origin[1], origin[2]};
+  made.spacing = {spacing[0], spacing[1], spacing[2]};
   vtkMatrix3x3* const matrix = image.GetDirectionMatrix();
   for (int axis = 0; axis < 3; ++axis) {
-    Vec3<double>& direction = placement.direction.column[axis];
-    direction = {matrix->GetElement(0, axis), matrix->GetElement(1, axis),
-                 matrix->GetElement(2, axis)};
-    placement.origin = placement.origin + direction * (spacing[axis] * extent[2 * axis]);
-    if (spacing[axis] < 0) {
-      spacing[axis] = -spacing[axis];
-      direction = -direction;
-    }
-    if (of_cells) placement.origin = placement.origin + direction * (spacing[axis] / 2);
+    made.first[static_cast<std::size_t>(axis)] = image.GetExtent()[2 * axis];
+    made.direction.column[axis] = {matrix->GetElement(0, axis), matrix->GetElement(1, axis),
+                                   matrix->GetElement(2, axis)};
   }
-  placement.spacing = {spacing[0], spacing[1], spacing[2]};
-  return placement;
+  return made;
 }
 
 std::vector<double> coordinates_of(vtkDataArray* array) {
@@ -194,7 +185,7 @@ Volume::Description grid_of(vtkDataSet& data, bool of_cells, const std::string& 
   grid.centering = of_cells ? Centering::cell : Centering::point;
   if (auto* const image = vtkImageData::SafeDownCast(&data)) {
     image->GetDimensions(grid.dimensions.data());
-    grid.placement = placement_of(*image, of_cells);
+    grid.placement = placement_of(settings_of(*image), of_cells);
   } else if (auto* const rectilinear = vtkRectilinearGrid::SafeDownCast(&data)) {
     rectilinear->GetDimensions(grid.dimensions.data());
     grid.coordinates = {coordinates_of(rectilinear->GetXCoordinates()),

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "hidden_places.h"
+#include "ghost_cells.h"
 #include "pellucid/scene/volume.h"
 
 class vtkDataArray;

@@ -126,7 +126,7 @@ Scene shape_of(const Scene& scene) {
 /// the edges of the viewport, and filters it: pixels of one texel each would be moved by up to half
 /// of a pixel. Of n = 2 w + 1 texels over w pixels, the middle of pixel i is the middle of texel
 /// 2 i + 1.
-void to_display(const Image& image, const View& view, std::vector<unsigned short>& pixels) {
+void to_display(const Image& image, const WindowView& view, std::vector<unsigned short>& pixels) {
   const auto line = 8 * static_cast<std::size_t>(view.width);
   pixels.resize(2 * line * static_cast<std::size_t>(view.height));
   unsigned short* to = pixels.data();
@@ -209,7 +209,7 @@ void MapperCore::release(vtkWindow* window) {
 }
 
 Scene MapperCore::scene_with(std::vector<Layer> layers, vtkRenderer& renderer, vtkVolume& volume,
-                             const View& view, Notes& notes) const {
+                             const WindowView& view, Notes& notes) const {
   Scene scene;
   scene.layers = std::move(layers);
   scene.camera = view.camera;
@@ -220,12 +220,14 @@ Scene MapperCore::scene_with(std::vector<Layer> layers, vtkRenderer& renderer, v
   scene.integration.set_tolerance(settings.tolerance);
   scene.integration.grade = settings.grade;
   if (const double* const bounds = volume.GetBounds()) {
-    scene.clips = depth_clips(view, bounds);
+    std::array<double, 6> box;
+    std::copy_n(bounds, 6, box.begin());
+    scene.clips = depth_clips(view, box);
   }
   return scene;
 }
 
-Scene MapperCore::scene_of(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& renderer,
+Scene MapperCore::scene_of(vtkVolumeMapper& mapper, const MaskImage& mask, vtkRenderer& renderer,
                            vtkVolume& volume) {
   Notes notes;
   return scene_with(layers_of(mapper, mapper.GetDataSetInput(), volume, mask, settings.tolerance,
@@ -240,14 +242,14 @@ Scene MapperCore::scene_of(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer&
                     view_of(renderer, notes), notes);
 }
 
-void MapperCore::draw(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& renderer,
+void MapperCore::draw(vtkVolumeMapper& mapper, const MaskImage& mask, vtkRenderer& renderer,
                       vtkVolume& volume) {
   draw(mapper, {{mapper.GetDataSetInput(), &volume}}, mask, renderer, volume);
 }
 
 void MapperCore::draw(vtkVolumeMapper& mapper,
                       const std::vector<std::pair<vtkDataSet*, vtkVolume*>>& parts,
-                      const Mask& mask, vtkRenderer& renderer, vtkVolume& volume) {
+                      const MaskImage& mask, vtkRenderer& renderer, vtkVolume& volume) {
   finish.shows_depths = mapper.GetBlendMode() == vtkVolumeMapper::ADDITIVE_BLEND;
   draw_layers(mapper, renderer, volume, [&](Notes& notes) {
     const double share = parts.size() > 1 ? 0.5 / static_cast<double>(parts.size()) : 1;
@@ -268,8 +270,8 @@ void MapperCore::draw(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer& rend
   draw_layers(mapper, renderer, volume, [&](Notes& notes) {
     return layers_of(mapper, volume, settings.tolerance, meshes_, notes);
   });
-  meshes_.functions.keep_used();
-  meshes_.curves.keep_used();
+  meshes_.looks.functions.keep_used();
+  meshes_.looks.curves.keep_used();
 }
 
 void MapperCore::draw_layers(vtkAbstractVolumeMapper& mapper, vtkRenderer& renderer,
@@ -290,7 +292,7 @@ void MapperCore::draw_layers(vtkAbstractVolumeMapper& mapper, vtkRenderer& rende
     if (layers.empty()) {
       outcome = {true, 0, 0};
     } else {
-      const View view = view_of(renderer, notes);
+      const WindowView view = view_of(renderer, notes);
       Scene scene = scene_with(std::move(layers), renderer, volume, view, notes);
       const double of_functions = finish.shows_depths ? sum_tolerance(inner_tolerance()) : 0;
       scene.integration.set_tolerance(inner_tolerance() - of_functions);
@@ -411,7 +413,7 @@ void MapperCore::raise_opacities(Image& image) {
   outcome.pixels_over = std::max(outcome.pixels_over, over);
 }
 
-void MapperCore::show(const Image& image, const View& view, vtkRenderer& renderer,
+void MapperCore::show(const Image& image, const WindowView& view, vtkRenderer& renderer,
                       vtkVolume& volume) {
   if (display_ == nullptr) {
     display_.TakeReference(vtkRayCastImageDisplayHelper::New());

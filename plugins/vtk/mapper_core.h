@@ -15,7 +15,6 @@
 
 #include "grid_layers.h"
 #include "mesh_layers.h"
-#include "notes.h"
 #include "pellucid/cpu/internal/moving_pictures.h"
 #include "pellucid/cpu/renderer.h"
 #include "pellucid/scene/scene.h"
@@ -97,13 +96,14 @@ class MapperCore {
 
   /// Draws a volume of a grid or of a mesh. What fails is told by the mapper's error event, what is
   /// left out by its warnings; each once.
-  void draw(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& renderer, vtkVolume& volume);
+  void draw(vtkVolumeMapper& mapper, const MaskImage& mask, vtkRenderer& renderer,
+            vtkVolume& volume);
   /// Draws several volumes with their data as one: where they overlap, they mix.
   void draw(vtkVolumeMapper& mapper, const std::vector<std::pair<vtkDataSet*, vtkVolume*>>& parts,
-            const Mask& mask, vtkRenderer& renderer, vtkVolume& volume);
+            const MaskImage& mask, vtkRenderer& renderer, vtkVolume& volume);
   void draw(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer& renderer, vtkVolume& volume);
   /// Returns the scene that draw() renders, without geometry. Throws Error.
-  Scene scene_of(vtkVolumeMapper& mapper, const Mask& mask, vtkRenderer& renderer,
+  Scene scene_of(vtkVolumeMapper& mapper, const MaskImage& mask, vtkRenderer& renderer,
                  vtkVolume& volume);
   Scene scene_of(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer& renderer, vtkVolume& volume);
   /// Lets go of what the display holds in a window.
@@ -115,7 +115,7 @@ class MapperCore {
   using MakeLayers = std::function<std::vector<Layer>(Notes&)>;
 
   Scene scene_with(std::vector<Layer> layers, vtkRenderer& renderer, vtkVolume& volume,
-                   const View& view, Notes& notes) const;
+                   const WindowView& view, Notes& notes) const;
   void draw_layers(vtkAbstractVolumeMapper& mapper, vtkRenderer& renderer, vtkVolume& volume,
                    const MakeLayers& make_layers);
   Image picture(const Scene& scene, vtkRenderer& renderer, double seconds);
@@ -125,7 +125,7 @@ class MapperCore {
   void take(const RenderReport& report);
   void finish_picture(const Scene& scene, Image& image);
   void raise_opacities(Image& image);
-  void show(const Image& image, const View& view, vtkRenderer& renderer, vtkVolume& volume);
+  void show(const Image& image, const WindowView& view, vtkRenderer& renderer, vtkVolume& volume);
   void tell(vtkAbstractVolumeMapper& mapper, const Notes& notes);
 
   KeptOfGrids grids_;

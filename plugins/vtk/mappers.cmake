@@ -7,18 +7,13 @@ set(_pellucid_vtk_folder "${CMAKE_CURRENT_LIST_DIR}")
 function(pellucid_vtk_mappers target)
   cmake_parse_arguments(arg "" "" "MODULES;SOURCES" ${ARGN})
   set(sources
-    cropping.cpp
-    curves.cpp
-    dependent_components.cpp
     ghost_cells.cpp
     grid_data.cpp
     grid_layers.cpp
-    hidden_places.cpp
-    look.cpp
     mapper_core.cpp
     mesh_layers.cpp
-    nearest_values.cpp
     selection.cpp
+    settings.cpp
     view.cpp
     vtkPellucidUnstructuredGridMapper.cpp
     ${arg_SOURCES})

@@ -10,16 +10,13 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridVolumeMapper.h>
 #include <vtkVolume.h>
-#include <vtkVolumeProperty.h>
 
 #include <algorithm>
 #include <string>
 
-#include "cropping.h"
 #include "grid_data.h"
 #include "pellucid/scene/cut_cells.h"
 #include "pellucid/scene/error.h"
-#include "view.h"
 #include "vtk/module/vtk_gather.h"
 
 namespace pellucid::plugin {
@@ -77,11 +74,6 @@ std::shared_ptr<const MeshChannels> mesh_of(vtkUnstructuredGrid& grid, vtkDataAr
   return cut_into_tetrahedra(cells, std::span(&choice, 1));
 }
 
-double size_of(const MeshChannels& mesh) {
-  const Vec3<double> size = mesh.mesh().bounds().upper - mesh.mesh().bounds().lower;
-  return std::max({size.x, size.y, size.z});
-}
-
 }  // namespace
 
 std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume& volume,
@@ -96,15 +88,7 @@ std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume&
   vtkDataArray* const array =
       vtkAbstractMapper::GetScalars(grid, mapper.GetScalarMode(), mapper.GetArrayAccessMode(),
                                     mapper.GetArrayId(), mapper.GetArrayName(), of_cells);
-  if (array == nullptr) {
-    throw Error(
-        "vtkUnstructuredGrid: has no values to show; give it scalars, or select one of "
-        "its arrays");
-  }
-  if (array->GetNumberOfComponents() != 1) {
-    throw Error("the array has " + std::to_string(array->GetNumberOfComponents()) +
-                " components; one is shown, extract it");
-  }
+  check_mesh_array(array == nullptr ? 0 : array->GetNumberOfComponents(), grid->GetClassName());
   const vtkMTimeType time = time_of(*grid, *array);
   // Cells that are inserted change no time.
   const std::array<vtkIdType, 2> counts{grid->GetNumberOfPoints(), grid->GetNumberOfCells()};
@@ -120,20 +104,9 @@ std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume&
     ++kept.made;
   }
   if (kept.mesh == nullptr) return {};
-  vtkVolumeProperty& property = *volume.GetProperty();
-  Layer layer;
-  layer.transform = affine_of(*volume.GetMatrix(), "volume");
-  layer.clips = clips_of(mapper.GetClippingPlanes(), notes);
-  if (mapper.GetBlendMode() == vtkUnstructuredGridVolumeMapper::MAXIMUM_INTENSITY_BLEND) {
-    layer.projection = LayerProjection::maximum;
-  }
-  const auto meaning = layer.projection ? OpacityMeaning::projected : OpacityMeaning::extinction;
-  FunctionReader reader(tolerance, kept.curves, notes);
-  const LookRecipe recipe =
-      look_recipe(property, 0, meaning, tolerance, size_of(*kept.mesh), {}, reader, notes);
-  layer.content = MeshContent{kept.mesh, kept.functions.find(recipe, function_of)};
-  if (property.GetShade(0) != 0) notes.add("volumes of unstructured grids have no light");
-  return {layer};
+  return {layer_of(MeshVolume{kept.mesh, settings_of(*volume.GetProperty(), 1), settings_of(mapper),
+                              elements_of(*volume.GetMatrix())},
+                   tolerance, kept.looks, notes)};
 }
 
 }  // namespace pellucid::plugin

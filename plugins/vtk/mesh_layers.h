@@ -9,9 +9,8 @@
 #include <memory>
 #include <vector>
 
-#include "look.h"
-#include "notes.h"
-#include "pellucid/scene/layer.h"
+#include "settings.h"
+#include "vtk_scene/mesh_layers.h"
 
 class vtkCellArray;
 class vtkDataArray;
@@ -30,12 +29,11 @@ struct KeptOfMeshes {
   std::array<vtkIdType, 2> counts{};  ///< of points and cells
   vtkSmartPointer<vtkCellArray> cells;
   int made = 0;  ///< how often it was cut
-  KeptFunctions functions;
-  KeptCurves curves;
+  KeptMeshLooks looks;
 };
 
-/// Returns the layer of a volume; none if the mapper has no input. Opacity / unit distance is the
-/// extinction, as VTK's mappers of unstructured grids take it. Throws Error.
+/// Returns the layer of a volume, as vtk_scene::layer_of(); none if the mapper has no input, or one
+/// of ghosts alone. Throws Error.
 std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume& volume,
                              double tolerance, KeptOfMeshes& kept, Notes& notes);
 

@@ -48,8 +48,8 @@ class GpuStandIn final : public vtkGPUVolumeRayCastMapper, public HasCore {
   int IsRenderSupported(vtkRenderWindow*, vtkVolumeProperty*) override { return 1; }
   void Render(vtkRenderer* renderer, vtkVolume* volume) override {
     update_inputs(*this);
-    const Mask mask{this->GetMaskInput(), this->GetMaskType() == BinaryMaskType,
-                    double{this->GetMaskBlendFactor()}};
+    const MaskImage mask{this->GetMaskInput(), this->GetMaskType() == BinaryMaskType,
+                         double{this->GetMaskBlendFactor()}};
     set_final_colors(this->core.finish, double{this->GetFinalColorWindow()},
                      double{this->GetFinalColorLevel()}, this->core.left_out);
     say_shadows_are_left_out(*this, this->core.left_out);

@@ -9,7 +9,7 @@
 
 namespace {
 
-pellucid::plugin::Mask mask_of(vtkPellucidVolumeMapper& mapper) {
+pellucid::plugin::MaskImage mask_of(vtkPellucidVolumeMapper& mapper) {
   return {mapper.GetMaskInput(), mapper.GetMaskType() == vtkPellucidVolumeMapper::BinaryMaskType,
           double{mapper.GetMaskBlendFactor()}};
 }

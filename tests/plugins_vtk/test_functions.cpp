@@ -11,10 +11,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "curves.h"
 #include "mapper_core.h"
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/error.h"
+#include "settings.h"
 #include "stand_ins.h"
 #include "tests/plugins_vtk/stage.h"
 #include "vtkPellucidVolumeMapper.h"
@@ -26,6 +26,7 @@ using plugin::FittedCurve;
 using plugin::FunctionReader;
 using plugin::KeptCurves;
 using plugin::Notes;
+using plugin::settings_of;
 
 struct Shape {
   double midpoint, sharpness;
@@ -73,7 +74,8 @@ TEST(VtkFunctions, ColorsAreVtksWithinWhatIsSaid) {
         for (const double tolerance : {1e-2, 1e-6}) {
           KeptCurves kept;
           Notes notes;
-          const FittedCurve curve = FunctionReader(tolerance, kept, notes).colors(*function, {});
+          const FittedCurve curve =
+              FunctionReader(tolerance, kept, notes).colors(settings_of(*function), {});
           EXPECT_LE(color_off(curve, *function), curve.deviation + 1e-12)
               << space << " " << scale << " " << shape.midpoint << " " << shape.sharpness;
           // Where vtkMath's branches of Lab do not meet, more is said. Colors of CIEDE2000 are
@@ -99,7 +101,8 @@ TEST(VtkFunctions, ColorsOutsideOfTheNodesAreVtks) {
         function->SetAboveRangeColor(0.7, 0.2, 1);
         KeptCurves kept;
         Notes notes;
-        const FittedCurve curve = FunctionReader(1e-4, kept, notes).colors(*function, {});
+        const FittedCurve curve =
+            FunctionReader(1e-4, kept, notes).colors(settings_of(*function), {});
         EXPECT_LE(color_off(curve, *function), curve.deviation + 1e-12);
       }
     }
@@ -121,7 +124,8 @@ TEST(VtkFunctions, OpacitiesAreVtksWithinWhatIsSaid) {
         function->SetUseLogScale(log);
         KeptCurves kept;
         Notes notes;
-        const FittedCurve curve = FunctionReader(1e-5, kept, notes).opacities(*function, 1, {});
+        const FittedCurve curve =
+            FunctionReader(1e-5, kept, notes).opacities(settings_of(*function), 1, {});
         EXPECT_LE(curve.deviation, 1e-5 / 16 + 1e-12);
         const auto depth = [](double opacity) { return -std::log1p(-opacity); };
         for (int i = 0; i < 5003; ++i) {
@@ -151,7 +155,7 @@ TEST(VtkFunctions, WhatLeavesTheLimitsIsCutBetweenTheNodes) {
   KeptCurves kept;
   Notes notes;
   FunctionReader reader(1e-3, kept, notes);
-  const FittedCurve curve = reader.opacities(*function, 1, {});
+  const FittedCurve curve = reader.opacities(settings_of(*function), 1, {});
   EXPECT_EQ(curve.deviation, 0);
   for (const auto& [x, y] : {std::pair{1.0, 0.7},
                              {2.5, 1.0},
@@ -164,7 +168,7 @@ TEST(VtkFunctions, WhatLeavesTheLimitsIsCutBetweenTheNodes) {
   }
   // Extinctions of meshes have no upper limit.
   const FittedCurve extinctions =
-      reader.opacities(*function, std::numeric_limits<double>::infinity(), {});
+      reader.opacities(settings_of(*function), std::numeric_limits<double>::infinity(), {});
   EXPECT_EQ(plugin::value_at(extinctions.points, 10).r, 2.5);
   EXPECT_EQ(plugin::value_at(extinctions.points, 19).r, 0);
 }

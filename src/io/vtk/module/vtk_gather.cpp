@@ -29,6 +29,7 @@
 
 #include "pellucid/scene/error.h"
 #include "vtk/vtk_cells.h"
+#include "vtk_scene/hidden_places.h"
 
 namespace pellucid {
 
@@ -176,9 +177,7 @@ class Ghosts {
   }
 
   bool has(vtkIdType cell) const {
-    constexpr int ghost = vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL |
-                          vtkDataSetAttributes::REFINEDCELL;
-    return (flags_ != nullptr && (flags_->GetValue(cell) & ghost) != 0) ||
+    return (flags_ != nullptr && (flags_->GetValue(cell) & vtk_scene::unseen_cell) != 0) ||
            (levels_ != nullptr && levels_->GetComponent(cell, 0) > 0);
   }
 
@@ -298,10 +297,8 @@ vtkUnsignedCharArray* point_flags(vtkDataSet& set) {
 
 /// Returns whether one of a cell's corners is hidden, which hides the cell.
 bool has_hidden_corner(vtkUnsignedCharArray& flags, std::span<const std::int64_t> corners) {
-  return std::ranges::any_of(corners, [&](std::int64_t point) {
-    return point >= 0 && point < flags.GetNumberOfValues() &&
-           (flags.GetValue(point) & vtkDataSetAttributes::HIDDENPOINT) != 0;
-  });
+  const auto count = static_cast<std::size_t>(flags.GetNumberOfValues());
+  return vtk_scene::has_hidden_corner({flags.GetPointer(0), count}, corners);
 }
 
 /// Returns the cells that are kept, by their numbers in VTK.

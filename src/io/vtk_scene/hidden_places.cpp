@@ -1,26 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hidden_places.h"
 
-#include <vtkDataSet.h>
-#include <vtkDataSetAttributes.h>
-
 #include <algorithm>
 #include <cstddef>
-#include <string>
 
-#include "ghost_cells.h"
 #include "pellucid/scene/error.h"
 
-namespace pellucid::plugin {
+namespace pellucid::vtk_scene {
 namespace {
 
-/// Which places have one of the flags; empty if none has.
-std::vector<bool> flagged(vtkUnsignedCharArray* flags, int any_of) {
+/// Returns which places have one of the flags; empty if none has.
+std::vector<bool> flagged(const GhostFlags& flags, int any_of) {
   std::vector<bool> found;
-  if (flags == nullptr) return found;
-  found.resize(static_cast<std::size_t>(flags->GetNumberOfValues()));
-  vtkIdType place = 0;
-  for (auto each : found) each = (flags->GetValue(place++) & any_of) != 0;
+  if (!flags) return found;
+  for (const unsigned char each : *flags) found.push_back((each & any_of) != 0);
   if (std::ranges::find(found, true) == found.end()) found.clear();
   return found;
 }
@@ -51,30 +44,19 @@ struct Lattice {
 
 }  // namespace
 
-GhostTimes ghost_times(vtkDataSet& data) {
-  GhostTimes found;
-  found.flags = {data.GetPointGhostArray(), data.GetCellGhostArray()};
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (found.flags[i] != nullptr) found.times[i] = found.flags[i]->GetMTime();
-  }
-  return found;
-}
-
-std::vector<bool> hidden_places(vtkDataSet& data, bool of_cells) {
-  std::vector<bool> points = flagged(data.GetPointGhostArray(), vtkDataSetAttributes::HIDDENPOINT);
-  std::vector<bool> cells =
-      flagged(data.GetCellGhostArray(),
-              vtkDataSetAttributes::HIDDENCELL | vtkDataSetAttributes::REFINEDCELL);
-  const std::array<int, 3> sides = cells_along(data);
+std::vector<bool> hidden_places(const GhostFlags& of_points, const GhostFlags& of_all_cells,
+                                const std::array<int, 3>& sides, bool of_cells,
+                                const std::string& name) {
   Lattice lattice;
   std::ranges::transform(sides, lattice.cells.begin(), [](int side) { return std::size_t(side); });
-  const auto fits = [](const std::vector<bool>& places, std::size_t count) {
-    return places.empty() || places.size() == count;
+  const auto fits = [](const GhostFlags& flags, std::size_t count) {
+    return !flags || flags->size() == count;
   };
-  if (!fits(points, lattice.count(1)) || !fits(cells, lattice.count(0))) {
-    throw Error(std::string(data.GetClassName()) +
-                ": vtkGhostType has another number of flags than there are points or cells");
+  if (!fits(of_points, lattice.count(1)) || !fits(of_all_cells, lattice.count(0))) {
+    throw Error(name + ": vtkGhostType has another number of flags than there are points or cells");
   }
+  std::vector<bool> points = flagged(of_points, hidden_point);
+  std::vector<bool> cells = flagged(of_all_cells, hidden_cell | refined_cell);
   if (of_cells) {
     if (points.empty()) return cells;
     cells.resize(lattice.count(0));
@@ -97,11 +79,11 @@ std::vector<bool> hidden_places(vtkDataSet& data, bool of_cells) {
   });
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
     if (!cells[cell] || is_gone[cell]) continue;
-    throw Error(std::string(data.GetClassName()) +
+    throw Error(name +
                 ": hides cells between others (vtkGhostType), which values at points cannot show; "
                 "hide points (BlankPoint()), or give the values to cells");
   }
   return points;
 }
 
-}  // namespace pellucid::plugin
+}  // namespace pellucid::vtk_scene

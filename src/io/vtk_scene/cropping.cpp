@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cropping.h"
 
-#include <vtkPlane.h>
-#include <vtkPlaneCollection.h>
-
 #include <bitset>
 #include <string>
 
 #include "pellucid/scene/error.h"
 
-namespace pellucid::plugin {
+namespace pellucid::vtk_scene {
 namespace {
 
 using Regions = std::bitset<27>;
@@ -64,7 +61,7 @@ std::vector<CroppedBox> boxes_of(int flags) {
   return boxes;
 }
 
-std::vector<Clip> clips_of(const CroppedBox& box, const double planes[6],
+std::vector<Clip> clips_of(const CroppedBox& box, const std::array<double, 6>& planes,
                            const Affine<double>& world_from_data) {
   std::vector<Clip> clips;
   const auto add = [&](std::size_t axis, double place, double side) {
@@ -72,7 +69,7 @@ std::vector<Clip> clips_of(const CroppedBox& box, const double planes[6],
     Vec3<double> point{0, 0, 0}, normal{0, 0, 0};
     point[a] = place;
     normal[a] = side;
-    clips.push_back({placed_plane(point, normal, world_from_data)});
+    clips.push_back({placed_plane({point, normal}, world_from_data)});
   };
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (box.first[axis] > 0) {
@@ -85,20 +82,17 @@ std::vector<Clip> clips_of(const CroppedBox& box, const double planes[6],
   return clips;
 }
 
-ClipPlane placed_plane(Vec3<double> point, Vec3<double> normal,
-                       const Affine<double>& world_from_data) {
+ClipPlane placed_plane(const Plane& plane, const Affine<double>& world_from_data) {
   const Mat3<double> back = inverse(world_from_data.matrix);
-  return {world_from_data.point(point),
-          {dot(back.column[0], normal), dot(back.column[1], normal), dot(back.column[2], normal)}};
+  return {world_from_data.point(plane.origin),
+          {dot(back.column[0], plane.normal), dot(back.column[1], plane.normal),
+           dot(back.column[2], plane.normal)}};
 }
 
-std::vector<Clip> clips_of(vtkPlaneCollection* planes, Notes& notes) {
+std::vector<Clip> clips_of(const std::vector<Plane>& planes, Notes& notes) {
   std::vector<Clip> clips;
-  for (int i = 0; planes != nullptr && i < planes->GetNumberOfItems(); ++i) {
-    vtkPlane* const plane = planes->GetItem(i);
-    const double *const origin = plane->GetOrigin(), *const normal = plane->GetNormal();
-    const Clip clip{
-        ClipPlane{{origin[0], origin[1], origin[2]}, {normal[0], normal[1], normal[2]}}};
+  for (const Plane& plane : planes) {
+    const Clip clip{ClipPlane{plane.origin, plane.normal}};
     try {
       check_clip(clip, "clipping plane");
       clips.push_back(clip);
@@ -109,4 +103,4 @@ std::vector<Clip> clips_of(vtkPlaneCollection* planes, Notes& notes) {
   return clips;
 }
 
-}  // namespace pellucid::plugin
+}  // namespace pellucid::vtk_scene

@@ -8,9 +8,7 @@
 #include "pellucid/scene/label_volume.h"
 #include "pellucid/scene/volume.h"
 
-class vtkVolumeProperty;
-
-namespace pellucid::plugin {
+namespace pellucid::vtk_scene {
 
 /// A volume each place of which has the nearest value: as a segmentation, whose labels are the
 /// places of their values in ascending order.
@@ -21,7 +19,8 @@ struct NearestValues {
 /// Throws Error for infinite values, or more than 2^24 different ones.
 NearestValues nearest_values(const Volume& volume);
 /// Returns VTK's own opacity and color of each value: at a jump those of VTK's choice.
-std::vector<ValueLook> looks_of(const std::vector<double>& values, vtkVolumeProperty& property,
-                                int component, const RampRange& ramp);
+std::vector<ValueLook> looks_of(const std::vector<double>& values,
+                                const ComponentSettings& component, const RampRange& ramp,
+                                FunctionReader& reader);
 
-}  // namespace pellucid::plugin
+}  // namespace pellucid::vtk_scene

@@ -6,17 +6,16 @@
 #include <optional>
 #include <vector>
 
-#include "curves.h"
+#include "functions.h"
 #include "kept.h"
 #include "notes.h"
+#include "pellucid/io/transfer_function_description.h"
 #include "pellucid/scene/label_volume.h"
 #include "pellucid/scene/light.h"
 #include "pellucid/scene/multivariate_transfer_function.h"
 #include "pellucid/scene/transfer_function.h"
 
-class vtkVolumeProperty;
-
-namespace pellucid::plugin {
+namespace pellucid::vtk_scene {
 
 /// Meaning of the opacities of a property of VTK.
 enum class OpacityMeaning {
@@ -50,6 +49,8 @@ constexpr double sum_tolerance(double tolerance) noexcept {
 /// beyond all data makes the largest one 1. Throws Error as TransferFunction and
 /// transfer_function_from_opacity_table() do.
 TransferFunction function_of(const LookRecipe& recipe);
+/// Returns the recipe's opacity table; none if its opacities mean something else.
+std::optional<OpacityTable> opacity_table_of(const LookRecipe& recipe);
 /// Ranges for ramps in the place of functions without nodes.
 struct LookRamps {
   RampRange opacity{}, color{};
@@ -58,9 +59,8 @@ struct LookRamps {
 /// distance of 0 is one that is short beside the data, as in VTK, which shows what absorbs as
 /// opaque; one that is no positive number is 1, VTK's default. `notes` say so. `size`: of the data,
 /// in the unit distance's unit.
-LookRecipe look_recipe(vtkVolumeProperty& property, int component, OpacityMeaning meaning,
-                       double tolerance, double size, const LookRamps& ramps,
-                       FunctionReader& reader, Notes& notes);
+LookRecipe look_recipe(const ComponentSettings& component, OpacityMeaning meaning, double tolerance,
+                       double size, const LookRamps& ramps, FunctionReader& reader, Notes& notes);
 
 /// Recipe of a function of dependent components: the last component has the opacity. Colors are
 /// those of the first of two, or of each of the first three of four, of which each has a color
@@ -89,13 +89,12 @@ using KeptFunctions = Kept<LookRecipe, TransferFunction>;
 /// Returns how a component reflects light; none where it is not shaded. VTK's normals have length 1
 /// wherever the gradient is not 0, so that the flatness is 0. Numbers beyond what a Shading takes
 /// are brought into it; those that are none are VTK's defaults.
-std::optional<Shading> shading_of(vtkVolumeProperty& property, int component, Notes& notes);
-/// Returns whether a component has a gradient opacity.
-bool has_gradient_opacity(vtkVolumeProperty& property, int component);
-/// Returns the gradient opacity of a component, by the change per voxel, from 0 on.
-FittedCurve gradient_curve(vtkVolumeProperty& property, int component, const RampRange& ramp,
+std::optional<Shading> shading_of(const PropertySettings& property, std::size_t component,
+                                  Notes& notes);
+/// Returns a gradient opacity by the change per voxel, from 0 on.
+FittedCurve gradient_curve(const FunctionSettings& function, const RampRange& ramp,
                            FunctionReader& reader);
 /// Returns it as the scene has it.
 GradientOpacity gradient_opacity_of(const Curve& curve);
 
-}  // namespace pellucid::plugin
+}  // namespace pellucid::vtk_scene

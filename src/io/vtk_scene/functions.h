@@ -9,13 +9,9 @@
 #include "kept.h"
 #include "notes.h"
 #include "pellucid/math/rgb.h"
-#include "transfer_functions/foreign_shaped.h"
+#include "settings.h"
 
-class vtkColorTransferFunction;
-class vtkPiecewiseFunction;
-class vtkVolumeProperty;
-
-namespace pellucid::plugin {
+namespace pellucid::vtk_scene {
 
 using foreign::Curve;
 using foreign::CurvePoint;
@@ -36,24 +32,23 @@ class FunctionReader {
       : deviation_(foreign::function_deviation(tolerance)), kept_(&kept), notes_(&notes) {}
 
   /// Opacities above `largest` are cut; those below 0 always are.
-  FittedCurve opacities(vtkPiecewiseFunction& function, double largest, const RampRange& ramp);
-  FittedCurve colors(vtkColorTransferFunction& function, const RampRange& ramp);
+  FittedCurve opacities(const FunctionSettings& function, double largest, const RampRange& ramp);
+  FittedCurve colors(const FunctionSettings& function, const RampRange& ramp);
   /// Returns the colors of a component: grey or RGB, as the property says.
-  FittedCurve colors(vtkVolumeProperty& property, int component, const RampRange& ramp);
+  FittedCurve colors(const ComponentSettings& component, const RampRange& ramp);
+
+  /// Return VTK's own value at a place, opacities from 0 to 1, colors of 0 or more: at a jump the
+  /// value of VTK's choice. Where VTK has no number it is the curve's.
+  double opacity_at(const FunctionSettings& function, const RampRange& ramp, double x);
+  Rgb<double> color_at(const ComponentSettings& component, const RampRange& ramp, double x);
 
  private:
-  FittedCurve fitted(const foreign::ShapedFunction& function, const char* what,
-                     const foreign::SampleWay& sample_way, const foreign::SampleFunction& own);
+  FittedCurve fitted(const FunctionSettings& function, double largest, const RampRange& ramp);
 
   double deviation_;
   KeptCurves* kept_;
   Notes* notes_;
 };
-
-/// Return VTK's own value at a place, opacities from 0 to 1, colors of 0 or more: at a jump the
-/// value of VTK's choice.
-double opacity_at(vtkPiecewiseFunction& function, const RampRange& ramp, double x);
-Rgb<double> color_at(vtkVolumeProperty& property, int component, const RampRange& ramp, double x);
 
 /// Returns the value at x; at a jump the one above.
 Rgb<double> value_at(const Curve& curve, double x);
@@ -70,4 +65,4 @@ struct JoinedPoint {
 /// Returns both curves at the points of each, twice where one of them jumps.
 std::vector<JoinedPoint> joined(const Curve& a, const Curve& b);
 
-}  // namespace pellucid::plugin
+}  // namespace pellucid::vtk_scene

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nearest_values.h"
 
-#include <vtkPiecewiseFunction.h>
-#include <vtkVolumeProperty.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,7 +10,7 @@
 
 #include "pellucid/scene/error.h"
 
-namespace pellucid::plugin {
+namespace pellucid::vtk_scene {
 
 NearestValues nearest_values(const Volume& volume) {
   constexpr std::size_t most = std::size_t{1} << 24;
@@ -40,14 +37,15 @@ NearestValues nearest_values(const Volume& volume) {
           std::move(values)};
 }
 
-std::vector<ValueLook> looks_of(const std::vector<double>& values, vtkVolumeProperty& property,
-                                int component, const RampRange& ramp) {
+std::vector<ValueLook> looks_of(const std::vector<double>& values,
+                                const ComponentSettings& component, const RampRange& ramp,
+                                FunctionReader& reader) {
   std::vector<ValueLook> looks;
-  vtkPiecewiseFunction& opacity = *property.GetScalarOpacity(component);
   for (const double value : values) {
-    looks.push_back({opacity_at(opacity, ramp, value), color_at(property, component, ramp, value)});
+    looks.push_back({reader.opacity_at(component.opacity, ramp, value),
+                     reader.color_at(component, ramp, value)});
   }
   return looks;
 }
 
-}  // namespace pellucid::plugin
+}  // namespace pellucid::vtk_scene

@@ -1,37 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "look.h"
 
-#include <vtkPiecewiseFunction.h>
-#include <vtkVersionMacros.h>
-#include <vtkVolumeProperty.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "pellucid/io/transfer_function_description.h"
 #include "pellucid/scene/opacity_table.h"
 
-namespace pellucid::plugin {
+namespace pellucid::vtk_scene {
 namespace {
 
 /// Beyond all data, which are at most 2.1e37.
 constexpr double beyond_data = 2.05e37;
 
 TransferFunction table(const LookRecipe& recipe) {
-  std::vector<OpacityPoint> points;
+  const OpacityTable table = *opacity_table_of(recipe);
   double largest_color = 1;
-  for (const JoinedPoint& p : recipe.points) {
-    points.push_back({p.x, std::clamp(p.a, 0.0, 1.0), p.b});
-    largest_color = std::max({largest_color, p.b.r, p.b.g, p.b.b});
+  for (const OpacityPoint& p : table.points) {
+    largest_color = std::max({largest_color, p.color.r, p.color.g, p.color.b});
   }
   const TransferFunction function = transfer_function_from_opacity_table(
-      points,
-      std::clamp(recipe.unit_distance / recipe.weight, smallest_unit_distance,
-                 largest_unit_distance),
+      table.points, table.unit_distance,
       required_relative_error(opacity_table_tolerance(recipe.tolerance), largest_color));
-  return {function.points(), function.relative_error() + recipe.opacity_deviation,
-          recipe.color_deviation};
+  return {function.points(), function.relative_error() + table.extinction_deviation,
+          table.color_deviation};
 }
 
 /// Chords that stand for the product of two lines.
@@ -107,6 +99,19 @@ double unit_distance(double of_property, double size, Notes& notes) {
 
 }  // namespace
 
+std::optional<OpacityTable> opacity_table_of(const LookRecipe& recipe) {
+  if (recipe.meaning != OpacityMeaning::per_unit_distance) return std::nullopt;
+  OpacityTable table;
+  for (const JoinedPoint& p : recipe.points) {
+    table.points.push_back({p.x, std::clamp(p.a, 0.0, 1.0), p.b});
+  }
+  table.unit_distance = std::clamp(recipe.unit_distance / recipe.weight, smallest_unit_distance,
+                                   largest_unit_distance);
+  table.extinction_deviation = recipe.opacity_deviation;
+  table.color_deviation = recipe.color_deviation;
+  return table;
+}
+
 TransferFunction function_of(const LookRecipe& recipe) {
   if (recipe.meaning == OpacityMeaning::per_unit_distance) return table(recipe);
   if (recipe.meaning == OpacityMeaning::averaged) return averages(recipe);
@@ -156,56 +161,47 @@ LabelTable label_table(const LookRecipe& recipe, const std::vector<ValueLook>& l
   return LabelTable(std::move(styles));
 }
 
-LookRecipe look_recipe(vtkVolumeProperty& property, int component, OpacityMeaning meaning,
-                       double tolerance, double size, const LookRamps& ramps,
-                       FunctionReader& reader, Notes& notes) {
+LookRecipe look_recipe(const ComponentSettings& component, OpacityMeaning meaning, double tolerance,
+                       double size, const LookRamps& ramps, FunctionReader& reader, Notes& notes) {
   const bool is_extinction = meaning == OpacityMeaning::extinction;
   const FittedCurve opacities =
-      reader.opacities(*property.GetScalarOpacity(component),
+      reader.opacities(component.opacity,
                        is_extinction ? std::numeric_limits<double>::infinity() : 1, ramps.opacity);
-  const FittedCurve colors = reader.colors(property, component, ramps.color);
+  const FittedCurve colors = reader.colors(component, ramps.color);
   LookRecipe recipe;
   recipe.points = joined(opacities.points, colors.points);
   recipe.meaning = meaning;
-  recipe.unit_distance =
-      unit_distance(property.GetScalarOpacityUnitDistance(component), size, notes);
+  recipe.unit_distance = unit_distance(component.unit_distance, size, notes);
   recipe.tolerance = tolerance;
   recipe.opacity_deviation = opacities.deviation;
   recipe.color_deviation = colors.deviation;
   return recipe;
 }
 
-/// From VTK's power to that of light.h: since 9.2 VTK has (r·v)^power, next to which |n·h|^(4
-/// power) has highlights of the same width.
-constexpr double power_factor = VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 2, 0) ? 4 : 1;
-
-std::optional<Shading> shading_of(vtkVolumeProperty& property, int component, Notes& notes) {
-  if (property.GetShade(component) == 0) return std::nullopt;
+std::optional<Shading> shading_of(const PropertySettings& property, std::size_t component,
+                                  Notes& notes) {
+  const auto& reflection = property.components.at(component).reflection;
+  if (!reflection) return std::nullopt;
   const auto number = [&](double value, double least, double most, double otherwise) {
     if (value >= least && value <= most) return value;
     notes.add("a number of the shading is beyond its range, and brought into it");
     return std::isnan(value) ? otherwise : std::clamp(value, least, most);
   };
   Shading shading;
-  shading.ambient = number(property.GetAmbient(component), 0, 1000, 0.1);
-  shading.diffuse = number(property.GetDiffuse(component), 0, 1000, 0.7);
-  shading.specular = number(property.GetSpecular(component), 0, 1000, 0.2);
-  const double power = power_factor * property.GetSpecularPower(component);
+  shading.ambient = number(reflection->ambient, 0, 1000, 0.1);
+  shading.diffuse = number(reflection->diffuse, 0, 1000, 0.7);
+  shading.specular = number(reflection->specular, 0, 1000, 0.2);
+  // Next to (r·v)^power, |n·h|^(4 power) of light.h has highlights of the same width.
+  const double power = (property.has_phong_highlights ? 4 : 1) * reflection->power;
   // Below 1 highlights are as wide as at 1, but for VTK's own 0 to 1.
   shading.power = power >= 0 && power < 1 ? 1 : number(power, 1, 1000, 10);
   shading.flatness = 0;
   return shading;
 }
 
-bool has_gradient_opacity(vtkVolumeProperty& property, int component) {
-  return property.GetDisableGradientOpacity(component) == 0 &&
-         property.HasGradientOpacity(component);
-}
-
-FittedCurve gradient_curve(vtkVolumeProperty& property, int component, const RampRange& ramp,
+FittedCurve gradient_curve(const FunctionSettings& function, const RampRange& ramp,
                            FunctionReader& reader) {
-  FittedCurve curve = reader.opacities(*property.GetGradientOpacity(component),
-                                       std::numeric_limits<double>::infinity(), ramp);
+  FittedCurve curve = reader.opacities(function, std::numeric_limits<double>::infinity(), ramp);
   // Magnitudes begin at 0.
   if (curve.points.front().x >= 0) return curve;
   Curve from_zero{{0, value_at(curve.points, 0)}};
@@ -222,4 +218,4 @@ GradientOpacity gradient_opacity_of(const Curve& curve) {
   return GradientOpacity(std::move(points), GradientOpacity::Unit::voxel);
 }
 
-}  // namespace pellucid::plugin
+}  // namespace pellucid::vtk_scene

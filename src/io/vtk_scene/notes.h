@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace pellucid::plugin {
+namespace pellucid::vtk_scene {
 
 /// List of VTK's settings that a picture leaves out: one line each.
 class Notes {
@@ -19,4 +19,4 @@ class Notes {
   std::vector<std::string> lines_;
 };
 
-}  // namespace pellucid::plugin
+}  // namespace pellucid::vtk_scene

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace pellucid::plugin {
+namespace pellucid::vtk_scene {
 
 /// Keeps the objects of the last picture by what they are made of, so that the renderer sees the
 /// same object again and keeps its set-up. Recipes are compared by their values.
@@ -48,4 +48,4 @@ class Kept {
   int made_ = 0;
 };
 
-}  // namespace pellucid::plugin
+}  // namespace pellucid::vtk_scene

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-class vtkDataArray;
-class vtkVolumeMapper;
+#include "grid_layers.h"
 
-namespace pellucid::plugin {
+namespace pellucid::vtk_scene {
 
 /// Throws Error for dependent components that VTK does not show, or that have no counterpart.
-void refuse_dependent_components(vtkVolumeMapper& mapper, vtkDataArray& array, bool has_mask);
+void refuse_dependent_components(const GridVolume& volume);
 /// Returns the value of components of color that stands for 1. Throws Error for types of which none
 /// does.
-double largest_color_value(vtkDataArray& array);
+double largest_color_value(const GridData& data);
 
-}  // namespace pellucid::plugin
+}  // namespace pellucid::vtk_scene
