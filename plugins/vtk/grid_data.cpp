@@ -122,7 +122,7 @@ struct Component {
     }
     values = std::move(copied);
   }
-  /// Whatever other array it is.
+  /// Takes whatever other array it is.
   void copy_slowly(vtkDataArray& array) {
     DataArray<double> copied(static_cast<std::size_t>(array.GetNumberOfTuples()));
     vtkIdType tuple = 0;

@@ -43,12 +43,13 @@ void KeptOfGrids::keep_used() {
   volumes.keep_used();
   labels.keep_used();
   looks.keep_used();
+  fits.keep_used();
   own_cells.keep_used();
 }
 
-std::vector<Layer> layers_of(vtkVolumeMapper& mapper, vtkDataSet* data, vtkVolume& volume,
-                             const MaskImage& mask, double tolerance, bool has_ambient_light,
-                             KeptOfGrids& kept, Notes& notes) {
+std::vector<TableLayer> layers_of(vtkVolumeMapper& mapper, vtkDataSet* data, vtkVolume& volume,
+                                  const MaskImage& mask, double tolerance, bool has_ambient_light,
+                                  KeptOfGrids& kept, Notes& notes) {
   if (data == nullptr) return {};
   int of_cells = 0;
   vtkDataArray* const array =
@@ -60,12 +61,7 @@ std::vector<Layer> layers_of(vtkVolumeMapper& mapper, vtkDataSet* data, vtkVolum
   given.mapper = settings_of(mapper);
   given.matrix = elements_of(*volume.GetMatrix());
   given.mask = mask_of(mask, of_cells != 0, kept);
-  std::vector<Layer> layers;
-  for (TableLayer& each :
-       vtk_scene::layers_of(given, tolerance, has_ambient_light, kept.looks, notes)) {
-    layers.push_back(std::move(each.layer));
-  }
-  return layers;
+  return vtk_scene::layers_of(given, tolerance, has_ambient_light, kept.looks, notes);
 }
 
 }  // namespace pellucid::plugin

@@ -5,6 +5,7 @@
 
 #include "ghost_cells.h"
 #include "grid_data.h"
+#include "vtk_scene/fit_tables.h"
 #include "vtk_scene/grid_layers.h"
 
 class vtkDataSet;
@@ -25,14 +26,15 @@ struct MaskImage {
 struct KeptOfGrids {
   KeptGrids volumes, labels;
   KeptLooks looks;
+  KeptFits fits;
   KeptOwnCells own_cells;
 
   void keep_used();
 };
 
 /// Returns the layers of a volume, as vtk_scene::layers_of(). No data give none. Throws Error.
-std::vector<Layer> layers_of(vtkVolumeMapper& mapper, vtkDataSet* data, vtkVolume& volume,
-                             const MaskImage& mask, double tolerance, bool has_ambient_light,
-                             KeptOfGrids& kept, Notes& notes);
+std::vector<TableLayer> layers_of(vtkVolumeMapper& mapper, vtkDataSet* data, vtkVolume& volume,
+                                  const MaskImage& mask, double tolerance, bool has_ambient_light,
+                                  KeptOfGrids& kept, Notes& notes);
 
 }  // namespace pellucid::plugin

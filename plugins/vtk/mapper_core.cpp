@@ -208,22 +208,28 @@ void MapperCore::release(vtkWindow* window) {
   if (display_ != nullptr) display_->ReleaseGraphicsResources(window);
 }
 
-Scene MapperCore::scene_with(std::vector<Layer> layers, vtkRenderer& renderer, vtkVolume& volume,
-                             const WindowView& view, Notes& notes) const {
+Scene MapperCore::scene_with(std::vector<TableLayer> layers, double tolerance,
+                             vtkRenderer& renderer, vtkVolume& volume, const WindowView& view,
+                             Notes& notes) {
   Scene scene;
-  scene.layers = std::move(layers);
+  std::vector<std::optional<OpacityTable>> tables;
+  for (TableLayer& each : layers) {
+    scene.layers.push_back(std::move(each.layer));
+    tables.push_back(std::move(each.table));
+  }
   scene.camera = view.camera;
   scene.size = view.size;
   const bool is_lit = std::ranges::any_of(
       scene.layers, [](const Layer& layer) { return layer.shading.has_value(); });
   scene.lights = lights_of(renderer, is_lit, notes);
-  scene.integration.set_tolerance(settings.tolerance);
+  scene.integration.set_tolerance(tolerance);
   scene.integration.grade = settings.grade;
   if (const double* const bounds = volume.GetBounds()) {
     std::array<double, 6> box;
     std::copy_n(bounds, 6, box.begin());
     scene.clips = depth_clips(view, box);
   }
+  fit_tables(tables, scene, grids_.fits);
   return scene;
 }
 
@@ -232,14 +238,14 @@ Scene MapperCore::scene_of(vtkVolumeMapper& mapper, const MaskImage& mask, vtkRe
   Notes notes;
   return scene_with(layers_of(mapper, mapper.GetDataSetInput(), volume, mask, settings.tolerance,
                               has_ambient_light(renderer), grids_, notes),
-                    renderer, volume, view_of(renderer, notes), notes);
+                    settings.tolerance, renderer, volume, view_of(renderer, notes), notes);
 }
 
 Scene MapperCore::scene_of(vtkUnstructuredGridVolumeMapper& mapper, vtkRenderer& renderer,
                            vtkVolume& volume) {
   Notes notes;
-  return scene_with(layers_of(mapper, volume, settings.tolerance, meshes_, notes), renderer, volume,
-                    view_of(renderer, notes), notes);
+  return scene_with(layers_of(mapper, volume, settings.tolerance, meshes_, notes),
+                    settings.tolerance, renderer, volume, view_of(renderer, notes), notes);
 }
 
 void MapperCore::draw(vtkVolumeMapper& mapper, const MaskImage& mask, vtkRenderer& renderer,
@@ -253,10 +259,10 @@ void MapperCore::draw(vtkVolumeMapper& mapper,
   finish.shows_depths = mapper.GetBlendMode() == vtkVolumeMapper::ADDITIVE_BLEND;
   draw_layers(mapper, renderer, volume, [&](Notes& notes) {
     const double share = parts.size() > 1 ? 0.5 / static_cast<double>(parts.size()) : 1;
-    std::vector<Layer> layers;
+    std::vector<TableLayer> layers;
     for (const auto& [data, part] : parts) {
-      for (Layer& layer : layers_of(mapper, data, *part, mask, share * inner_tolerance(),
-                                    has_ambient_light(renderer), grids_, notes)) {
+      for (TableLayer& layer : layers_of(mapper, data, *part, mask, share * inner_tolerance(),
+                                         has_ambient_light(renderer), grids_, notes)) {
         layers.push_back(std::move(layer));
       }
     }
@@ -288,14 +294,14 @@ void MapperCore::draw_layers(vtkAbstractVolumeMapper& mapper, vtkRenderer& rende
   is_drawing_ = true;
   try {
     Notes notes = left_out;
-    std::vector<Layer> layers = make_layers(notes);
+    std::vector<TableLayer> layers = make_layers(notes);
     if (layers.empty()) {
       outcome = {true, 0, 0};
     } else {
       const WindowView view = view_of(renderer, notes);
-      Scene scene = scene_with(std::move(layers), renderer, volume, view, notes);
       const double of_functions = finish.shows_depths ? sum_tolerance(inner_tolerance()) : 0;
-      scene.integration.set_tolerance(inner_tolerance() - of_functions);
+      Scene scene = scene_with(std::move(layers), inner_tolerance() - of_functions, renderer,
+                               volume, view, notes);
       scene.backdrop = geometry_of(renderer, view);
       if (shows_translucent_geometry(renderer)) {
         notes.add("translucent geometry lies behind volumes, wherever it is");

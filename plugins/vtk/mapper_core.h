@@ -112,10 +112,11 @@ class MapperCore {
   int data_made() const noexcept { return grids_.volumes.made() + meshes_.made; }
 
  private:
-  using MakeLayers = std::function<std::vector<Layer>(Notes&)>;
+  using MakeLayers = std::function<std::vector<TableLayer>(Notes&)>;
 
-  Scene scene_with(std::vector<Layer> layers, vtkRenderer& renderer, vtkVolume& volume,
-                   const WindowView& view, Notes& notes) const;
+  /// Returns the scene of layers without its backdrop, to a tolerance.
+  Scene scene_with(std::vector<TableLayer> layers, double tolerance, vtkRenderer& renderer,
+                   vtkVolume& volume, const WindowView& view, Notes& notes);
   void draw_layers(vtkAbstractVolumeMapper& mapper, vtkRenderer& renderer, vtkVolume& volume,
                    const MakeLayers& make_layers);
   Image picture(const Scene& scene, vtkRenderer& renderer, double seconds);

@@ -33,6 +33,10 @@ vtkSmartPointer<vtkUnstructuredGrid> with_values(vtkUnstructuredGrid& grid, vtkD
       bare->GetCellData()->AddArray(about);
     }
   }
+  if (vtkDataArray* const hidden =
+          grid.GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName())) {
+    bare->GetPointData()->AddArray(hidden);
+  }
   bare->GetCellData()->SetHigherOrderDegrees(grid.GetCellData()->GetHigherOrderDegrees());
   vtkSmartPointer<vtkDataArray> values(&array);
   if (array.GetName() == nullptr || *array.GetName() == '\0') {
@@ -48,7 +52,8 @@ vtkSmartPointer<vtkUnstructuredGrid> with_values(vtkUnstructuredGrid& grid, vtkD
   return bare;
 }
 
-/// When what a mesh is made of changed last. The time of a grid leaves out that of its cells.
+/// Returns when what a mesh is made of changed last. The time of a grid leaves out that of its
+/// cells.
 vtkMTimeType time_of(vtkUnstructuredGrid& grid, vtkDataArray& array) {
   vtkMTimeType time = std::max(grid.GetMTime(), array.GetMTime());
   if (vtkCellArray* const cells = grid.GetCells()) {
@@ -61,7 +66,7 @@ vtkMTimeType time_of(vtkUnstructuredGrid& grid, vtkDataArray& array) {
   return time;
 }
 
-/// Null if all cells are ghosts.
+/// Returns null if all cells are ghosts.
 std::shared_ptr<const MeshChannels> mesh_of(vtkUnstructuredGrid& grid, vtkDataArray& array,
                                             bool of_cells) {
   MeshBlocks blocks;
@@ -76,8 +81,8 @@ std::shared_ptr<const MeshChannels> mesh_of(vtkUnstructuredGrid& grid, vtkDataAr
 
 }  // namespace
 
-std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume& volume,
-                             double tolerance, KeptOfMeshes& kept, Notes& notes) {
+std::vector<TableLayer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume& volume,
+                                  double tolerance, KeptOfMeshes& kept, Notes& notes) {
   auto* const grid = vtkUnstructuredGrid::SafeDownCast(mapper.GetDataSetInput());
   if (grid == nullptr) {
     if (mapper.GetDataSetInput() == nullptr) return {};
@@ -104,9 +109,9 @@ std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume&
     ++kept.made;
   }
   if (kept.mesh == nullptr) return {};
-  return {layer_of(MeshVolume{kept.mesh, settings_of(*volume.GetProperty(), 1), settings_of(mapper),
-                              elements_of(*volume.GetMatrix())},
-                   tolerance, kept.looks, notes)};
+  const MeshVolume given{kept.mesh, settings_of(*volume.GetProperty(), 1), settings_of(mapper),
+                         elements_of(*volume.GetMatrix())};
+  return {{layer_of(given, tolerance, kept.looks, notes), std::nullopt}};
 }
 
 }  // namespace pellucid::plugin

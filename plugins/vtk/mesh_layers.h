@@ -34,7 +34,7 @@ struct KeptOfMeshes {
 
 /// Returns the layer of a volume, as vtk_scene::layer_of(); none if the mapper has no input, or one
 /// of ghosts alone. Throws Error.
-std::vector<Layer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume& volume,
-                             double tolerance, KeptOfMeshes& kept, Notes& notes);
+std::vector<TableLayer> layers_of(vtkUnstructuredGridVolumeMapper& mapper, vtkVolume& volume,
+                                  double tolerance, KeptOfMeshes& kept, Notes& notes);
 
 }  // namespace pellucid::plugin

@@ -168,7 +168,7 @@ PropertySettings settings_of(vtkVolumeProperty& property, int components) {
   return made;
 }
 
-/// VTK before 9.2 has normals of the values alone.
+/// Returns whether normals are those of opacities; VTK before 9.2 has none.
 template <class Mapper>
 bool has_normals_of_opacity(Mapper& mapper) {
   if constexpr (requires { mapper.GetComputeNormalFromOpacity(); }) {

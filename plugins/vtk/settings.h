@@ -17,7 +17,7 @@ using namespace vtk_scene;  // NOLINT(google-build-using-namespace): what all so
 /// Return the numbers of VTK's objects. Functions are asked for values as long as they live.
 FunctionSettings settings_of(vtkPiecewiseFunction& function);
 FunctionSettings settings_of(vtkColorTransferFunction& function);
-/// `components`: how many the array that is shown has.
+/// Returns the numbers of as many components as the array that is shown has.
 PropertySettings settings_of(vtkVolumeProperty& property, int components);
 MapperSettings settings_of(vtkVolumeMapper& mapper);
 MapperSettings settings_of(vtkUnstructuredGridVolumeMapper& mapper);

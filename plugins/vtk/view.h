@@ -13,7 +13,7 @@ namespace pellucid::plugin {
 
 /// A view with its place in the window.
 struct WindowView : View {
-  int left = 0, bottom = 0;  ///< of the renderer's part in the window
+  int left = 0, bottom = 0;  ///< corner of the renderer's part in the window
 };
 
 /// Returns the camera of a renderer, as vtk_scene::view_of(). Throws Error.

@@ -12,11 +12,15 @@ from typing import Any, List, Optional
 
 import numpy
 
-from . import _ghosts, _labelled, _nibabel
+from . import _labelled, _nibabel
 from ._masks import as_array
 from ._notes import tell
 from ._pellucid import Error
+from ._pellucid import _vtk_hidden_places, _vtk_placement  # type: ignore[attr-defined]
 from ._places import Placed, three_axes
+
+# Arrays of VTK's data sets that are no data.
+VTK_MARKS = ("vtkGhostType", "vtkGhostLevels")
 
 
 def placed(data: Any, spacing: Any, origin: Any, direction: Any, coordinates: Any,
@@ -109,7 +113,7 @@ def vtk_array(attributes: Any, wanted: Optional[str], name: str) -> Any:
         return attributes.GetScalars()
     arrays = [attributes.GetArray(i) for i in range(attributes.GetNumberOfArrays())]
     arrays = [array for array in arrays
-              if array is not None and array.GetName() not in _ghosts.NAMES]
+              if array is not None and array.GetName() not in VTK_MARKS]
     single = [array for array in arrays if array.GetNumberOfComponents() == 1]
     return (single or arrays or [None])[0]
 
@@ -154,8 +158,18 @@ def means_cells(data: Any) -> bool:
     return getattr(association, "name", "") == "CELL"
 
 
-def vtk_components(data: Any) -> List[Placed]:
-    """Returns each component of a grid's array, and its place. What is hidden is NaN."""
+def vtk_flags(attributes: Any) -> Optional[numpy.ndarray]:
+    """The flags of vtkGhostType of points or cells; None if there are none."""
+    array = attributes.GetArray(VTK_MARKS[0])
+    return None if array is None else numpy.asarray(memoryview(array)).ravel()
+
+
+def vtk_components(data: Any, values: Optional[numpy.ndarray] = None,
+                   centering: str = "point") -> List[Placed]:
+    """Returns each component of a grid's array, and its place. What is hidden is NaN.
+
+    values  (n, components), in the place of the values that a reader of files takes
+    """
     name = data.GetClassName()
     if data.IsA("vtkCompositeDataSet"):
         raise Error(f"{name}: is a list of data; give one of its blocks")
@@ -164,37 +178,30 @@ def vtk_components(data: Any) -> List[Placed]:
     if not (data.IsA("vtkImageData") or data.IsA("vtkRectilinearGrid")):
         raise Error(f"{name}: expected a vtkImageData or a vtkRectilinearGrid (meshes: "
                     "pellucid.mesh_of); for a pipeline give its GetOutput() after Update()")
-    array, centering = vtk_array(data.GetPointData(), None, name), "point"
-    if array is None or (means_cells(data) and data.GetCellData().GetScalars() is not None):
-        array, centering = vtk_array(data.GetCellData(), None, name), "cell"
-    if array is None:
-        raise Error(f"{name}: has no values; give it scalars, or Update() its pipeline")
-    cells = 1 if centering == "cell" else 0
-    shape = tuple(side - cells for side in data.GetDimensions())[::-1]
-    count = array.GetNumberOfComponents()
-    if array.GetNumberOfTuples() != math.prod(shape):
-        raise Error(f"{name}: has {array.GetNumberOfTuples()} values for {math.prod(shape)} places")
-    all_values = vtk_values(array, name).reshape(*shape, count)
-    hidden = _ghosts.hidden_places(data, centering)
+    if values is None:
+        array, centering = vtk_array(data.GetPointData(), None, name), "point"
+        if array is None or (means_cells(data) and data.GetCellData().GetScalars() is not None):
+            array, centering = vtk_array(data.GetCellData(), None, name), "cell"
+        if array is None:
+            raise Error(f"{name}: has no values; give it scalars, or Update() its pipeline")
+        values = vtk_values(array, name).reshape(-1, array.GetNumberOfComponents())
+    cells = [side - 1 for side in data.GetDimensions()]
+    shape = tuple(side + (centering == "point") for side in cells)[::-1]
+    if len(values) != math.prod(shape):
+        raise Error(f"{name}: has {len(values)} values for {math.prod(shape)} places")
+    hidden = _vtk_hidden_places(vtk_flags(data.GetPointData()), vtk_flags(data.GetCellData()),
+                                cells, centering == "cell", name)
     if hidden is not None:
-        wide = all_values.dtype.itemsize > 2 and all_values.dtype != numpy.float32
-        all_values = all_values.astype(numpy.float64 if wide else numpy.float32)
-        all_values[hidden] = numpy.nan
-    values = [all_values[..., c] for c in range(count)]
+        wide = values.dtype.itemsize > 2 and values.dtype != numpy.float32
+        values = values.astype(numpy.float64 if wide else numpy.float32)
+        values[hidden] = numpy.nan
+    values = values.reshape(*shape, -1)
+    parts = [values[..., c] for c in range(values.shape[-1])]
     if data.IsA("vtkRectilinearGrid"):
         axes = (data.GetZCoordinates(), data.GetYCoordinates(), data.GetXCoordinates())
         coordinates = tuple(vtk_values(axis, name) for axis in axes)
         return [Placed(one, coordinates=coordinates, centering=centering, name=name)
-                for one in values]
-    matrix = data.GetDirectionMatrix()
-    direction = numpy.array([[matrix.GetElement(row, column) for column in range(3)]
-                             for row in range(3)])
-    spacing, origin = list(data.GetSpacing()), numpy.array(data.GetOrigin())
-    for axis, first in enumerate(data.GetExtent()[::2]):
-        origin = origin + direction[:, axis] * (spacing[axis] * first)
-        if spacing[axis] < 0:
-            spacing[axis], direction[:, axis] = -spacing[axis], -direction[:, axis]
-    for axis in range(3 * cells):
-        origin = origin + direction[:, axis] * (spacing[axis] / 2)
-    return [Placed(one, tuple(spacing)[::-1], tuple(origin)[::-1], direction[::-1, ::-1],
-                   centering=centering, name=name) for one in values]
+                for one in parts]
+    origin, spacing, direction = _vtk_placement(data, centering == "cell")
+    return [Placed(one, spacing[::-1], origin[::-1], direction[::-1, ::-1], centering=centering,
+                   name=name) for one in parts]

@@ -6,8 +6,9 @@ from typing import Any, Dict, List, Optional, Sequence
 
 import numpy
 
-from . import _arrays, _ghosts, _meshes
+from . import _arrays, _meshes
 from ._pellucid import Error, Mesh
+from ._pellucid import _vtk_shown_cells  # type: ignore[attr-defined]
 
 _POLYHEDRON = 42
 
@@ -17,16 +18,31 @@ def mesh_of(grid: Any, channels: Optional[Sequence[str]]) -> Mesh:
     name = grid.GetClassName()
     if grid.GetNumberOfCells() == 0 or grid.GetPoints() is None:
         raise Error(f"{name}: has no cells; Update() the pipeline that makes it")
-    points = _arrays.vtk_values(grid.GetPoints().GetData(), name)
-    cells = _structured_cells(grid) if grid.IsA("vtkStructuredGrid") else _cells(grid)
     point_data = _arrays_of(grid.GetPointData(), name)
     cell_data = _arrays_of(grid.GetCellData(), name)
-    active = _active(grid, point_data)
-    shown = ~_hidden(grid, cells)
+    mesh = _mesh(grid, point_data, cell_data, channels, _active(grid, point_data))
+    if mesh is None:
+        raise Error(f"{name}: all of its cells are hidden or ghosts (vtkGhostType)")
+    return mesh
+
+
+def shown_mesh(grid: Any, array: Any, centering: str) -> Optional[Mesh]:
+    """Returns the Mesh of a grid with one array; None if all of its cells are hidden."""
+    values = {"value": _arrays.vtk_values(array, grid.GetClassName())}
+    return _mesh(grid, values if centering == "point" else {},
+                 values if centering == "cell" else {}, None, "value")
+
+
+def _mesh(grid: Any, point_data: Dict[str, numpy.ndarray], cell_data: Dict[str, numpy.ndarray],
+          channels: Optional[Sequence[str]], active: Optional[str]) -> Optional[Mesh]:
+    name = grid.GetClassName()
+    points = _arrays.vtk_values(grid.GetPoints().GetData(), name)
+    cells = _structured_cells(grid) if grid.IsA("vtkStructuredGrid") else _cells(grid)
+    shown = _shown(grid, cells)
     if not shown.all():
         kept = numpy.flatnonzero(shown)
         if not len(kept):
-            raise Error(f"{name}: all of its cells are hidden or ghosts (vtkGhostType)")
+            return None
         cells = _meshes.chosen(cells, kept)
         cell_data = {key: values[kept] for key, values in cell_data.items()}
     return Mesh(points, cells.parts(), point_data, cell_data, channels, name=name, active=active)
@@ -34,7 +50,7 @@ def mesh_of(grid: Any, channels: Optional[Sequence[str]]) -> Mesh:
 
 def _is_left_out(array: Any, attributes: Any) -> bool:
     """Whether an array is no data but ghosts, numbers of points, or the orders of cells."""
-    return (array.GetName() in _ghosts.NAMES or array.GetNumberOfComponents() < 1
+    return (array.GetName() in _arrays.VTK_MARKS or array.GetNumberOfComponents() < 1
             or any(array is each for each in (attributes.GetGlobalIds(),
                                               attributes.GetPedigreeIds(), _orders(attributes))))
 
@@ -75,28 +91,17 @@ def _active(grid: Any, point_data: Dict[str, numpy.ndarray]) -> Optional[str]:
     return None
 
 
-def _flags(attributes: Any, count: int, flags: int, name: str) -> numpy.ndarray:
-    """bool (count,): which points or cells have one of the flags."""
-    found = _ghosts.flags_of(attributes)
-    if found is None:
-        return numpy.zeros(count, dtype=bool)
-    if len(found) != count:
-        raise Error(f"{name}: vtkGhostType has {len(found)} flags for {count} places")
-    return (found & flags) != 0
-
-
-def _hidden(grid: Any, cells: _meshes.Cells) -> numpy.ndarray:
-    """bool (cells,): which are duplicates, refined, hidden or have a hidden point (BlankPoint)."""
-    name = grid.GetClassName()
-    hidden = _flags(grid.GetCellData(), len(cells.types),
-                    _ghosts.DUPLICATE_CELL | _ghosts.REFINED_CELL | _ghosts.HIDDEN_CELL, name)
-    points = _flags(grid.GetPointData(), grid.GetNumberOfPoints(), _ghosts.HIDDEN_POINT, name)
-    if not points.any():
-        return hidden
+def _shown(grid: Any, cells: _meshes.Cells) -> numpy.ndarray:
+    """bool (cells,): which are neither duplicates, refined, hidden nor have a hidden point."""
     # Of polyhedra the points stand among counts: VTK's own lists have the points alone.
     lists = cells if grid.IsA("vtkStructuredGrid") else _lists(grid)
-    gone = numpy.concatenate([[0], numpy.cumsum(points[lists.connectivity])])
-    return hidden | (gone[lists.offsets[1:]] > gone[lists.offsets[:-1]])
+    flags, levels = (_arrays.vtk_flags(grid.GetCellData()),
+                     grid.GetCellData().GetArray(_arrays.VTK_MARKS[1]))
+    if levels is not None:  # of files before VTK 6.3: above 0 is a duplicate
+        duplicates = (_arrays.vtk_values(levels, "ghost levels") > 0).astype(numpy.uint8)
+        flags = duplicates if flags is None else flags | duplicates
+    return _vtk_shown_cells(_arrays.vtk_flags(grid.GetPointData()), flags, lists.offsets,
+                            lists.connectivity, grid.GetNumberOfPoints(), grid.GetClassName())
 
 
 def _structured_cells(grid: Any) -> _meshes.Cells:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy
 
 from ._pellucid import Error
-from ._vtk_view import is_a, items
+from ._vtk_layers import is_a, items
 
 
 def picture_of(window: Any, renderer: Any) -> numpy.ndarray:

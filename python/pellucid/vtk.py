@@ -22,9 +22,10 @@ from typing import Any, List, Sequence, Tuple
 import numpy
 
 from ._pellucid import Error, Image, Renderer
-from ._vtk_layers import LayerMaker
+from ._pellucid import (  # type: ignore[attr-defined]
+    _vtk_has_ambient_light, _vtk_lights, _vtk_view)
+from ._vtk_layers import is_a, items, layers_of, parts_of
 from ._vtk_picture import picture_of
-from ._vtk_view import has_ambient_light, is_a, items, lights_of, view_of
 from .scene import Integration, Layer, Scene
 
 # What pictures are held against, and what functions are fitted for where nobody says.
@@ -167,12 +168,13 @@ def scene_of(renderer: Any, notes: Any = None, tolerance: float = _DEFAULT_TOLER
     tolerance  of pictures of the scene: functions are fitted for it, and what they are off is
                counted in a picture's error. Finer fits of curved functions take longer to render
 
-    The array is the one that the mapper shows. Volumes of vtkImageData or vtkRectilinearGrid take
-    their opacities per unit distance, those of unstructured grids as extinctions. Clipping and
-    cropping planes become clips, and so do those of the camera where they cut volumes. Other props
-    are left out. Independent components are layers, dependent ones Channels with a factor, and the
-    nearest values of an unlit volume a LabelVolume. The parts of a vtkMultiVolume are layers.
-    Raises Error for what has no counterpart: masks, blend modes other than composite.
+    It is the scene that the plug-in for VTK renders, with all volumes in one: the array that the
+    mapper shows, opacities per unit distance (of unstructured grids extinctions), masks, blend
+    modes. Clipping and cropping planes become clips, and so do those of the camera where they cut
+    volumes. Independent components are layers, dependent ones Channels with a factor, and the
+    nearest values of an unlit volume a LabelVolume. The parts of a vtkMultiVolume are layers. Other
+    props are left out. Raises Error for what has no counterpart: sums of additive blending, a
+    camera whose window is not in the middle.
 
     The window and level of the final color are those of a picture: finished() applies them.
     """
@@ -183,25 +185,33 @@ def scene_of(renderer: Any, notes: Any = None, tolerance: float = _DEFAULT_TOLER
     volumes = items(renderer.GetVolumes())
     if not volumes:
         raise Error("renderer: has no vtkVolume; add one before its scene is asked for")
-    maker = LayerMaker(tolerance, has_ambient_light(renderer), told)
+    ambient = _vtk_has_ambient_light(renderer)
+    parts = [(volume, parts_of(volume, f"volume {i + 1}")) for i, volume in enumerate(volumes)]
+    count = sum(len(list_of_volume) for _, list_of_volume in parts)
     layers: List[Layer] = []
-    for i, volume in enumerate(volumes):
-        made = maker.layers(volume, f"volume {i + 1}")
-        if volume.IsA("vtkMultiVolume") and len(made) > 1:
+    for volume, list_of_volume in parts:
+        for part in list_of_volume:
+            # The errors of functions of layers that overlap add, and double beside other layers.
+            made = layers_of(part, tolerance if count == 1 else tolerance * 0.5 / count, ambient,
+                             told)
+            for layer in made:
+                layer.visible = bool(volume.GetVisibility() and part.volume.GetVisibility())
+            layers += made
+        if len(list_of_volume) > 1:
             told.append("volumes of a vtkMultiVolume mix here as particles do")
-        layers += made
+    if not layers:
+        raise Error("renderer: its volumes show nothing: all of their cells are hidden or ghosts, "
+                    "or all components have the weight 0")
     if len(volumes) > 1:
         told.append("VTK draws volumes one over the other; here overlapping ones mix")
     others = sum(1 for prop in items(renderer.GetViewProps())
                  if not is_a(prop, "vtkVolume") and prop.GetVisibility())
     if others:
         told.append(f"{others} props that are no volumes are left out")
-    width, height = renderer.GetSize()
-    if width < 1 or height < 1:
-        raise Error("renderer: has no size; add it to a window")
+    scene = Scene(layers, size=tuple(renderer.GetSize()))
+    scene.camera, scene.clips = _view_of(renderer, volumes, told)
     is_lit = any(layer.shading is not None for layer in layers)
-    scene = Scene(layers, size=(width, height), lights=lights_of(renderer, is_lit, told))
-    scene.camera, scene.clips = view_of(renderer, _bounds(volumes))
+    scene.lights = _vtk_lights(renderer, is_lit, told)
     if notes is None:
         _warn(told)
     else:
@@ -209,10 +219,18 @@ def scene_of(renderer: Any, notes: Any = None, tolerance: float = _DEFAULT_TOLER
     return scene
 
 
-def _bounds(volumes: List[Any]) -> Tuple[float, ...]:
-    boxes = numpy.array([volume.GetBounds() for volume in volumes])
-    return tuple(float(boxes[:, side].max() if side % 2 else boxes[:, side].min())
-                 for side in range(6))
+def _view_of(renderer: Any, volumes: List[Any], told: List[str]) -> Any:
+    """The camera, and those of its clipping planes that cut volumes off."""
+    window = renderer.GetRenderWindow()
+    if window is not None and tuple(window.GetTileScale()) != (1, 1):
+        raise Error("window: is a tile of a larger picture; call SetTileScale(1, 1)")
+    boxes = numpy.array([box for box in (volume.GetBounds() for volume in volumes) if box])
+    bounds = [boxes[:, side].max() if side % 2 else boxes[:, side].min()
+              for side in range(6)] if len(boxes) else None
+    camera, clips, is_cut = _vtk_view(renderer, bounds, told)
+    if is_cut:
+        raise Error("camera: its center is not that of the window (WindowCenter); set it to 0 0")
+    return camera, clips
 
 
 def finished(renderer: Any, image: Image) -> Image:

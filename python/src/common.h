@@ -63,6 +63,7 @@ void bind_renderers(py::module_& module);
 void bind_ranks(py::module_& module);
 void bind_segments(py::module_& module);
 void bind_viewers(py::module_& module);
+void bind_vtk_scenes(py::module_& module);
 
 /// Returns the text that Python shows of an object, at most 60 characters.
 std::string short_repr(const py::handle& object);

@@ -6,7 +6,6 @@
 #include "handles.h"
 #include "pellucid/io/export_transfer_function.h"
 #include "pellucid/io/import_transfer_function.h"
-#include "transfer_functions/foreign_shaped.h"
 
 namespace pellucid::python {
 
@@ -65,58 +64,6 @@ std::string export_text(const py::object& function, const std::string& format, d
   return exported.text;
 }
 
-Rgb<double> rgb_of(const std::array<double, 3>& c) {
-  return {c[0], c[1], c[2]};
-}
-
-std::vector<Rgb<double>> colors_of(const py::object& rows) {
-  std::vector<Rgb<double>> colors;
-  for (const auto& row : py::cast<std::vector<std::array<double, 3>>>(rows)) {
-    colors.push_back(rgb_of(row));
-  }
-  return colors;
-}
-
-/// Returns (points (n, 4), deviation, is_coarse, has_no_number) of foreign::fit().
-py::tuple fit_vtk_function(const std::vector<std::array<double, 6>>& nodes, bool is_color,
-                           int space, bool wraps_hue, bool is_logarithmic, bool jumps,
-                           bool is_clamped, const std::optional<std::array<double, 3>>& below,
-                           const std::optional<std::array<double, 3>>& above, double largest,
-                           double deviation, const py::object& own, const py::object& way) {
-  foreign::ShapedFunction function;
-  for (const auto& n : nodes) {
-    function.nodes.push_back({n[0], {n[1], n[2], n[3]}, n[4], n[5]});
-  }
-  function.is_color = is_color;
-  function.space = space;
-  function.wraps_hue = wraps_hue;
-  function.is_logarithmic = is_logarithmic;
-  function.jumps = jumps;
-  function.is_clamped = is_clamped;
-  if (below) function.below = rgb_of(*below);
-  if (above) function.above = rgb_of(*above);
-  function.largest = largest;
-  foreign::SampleFunction sample;
-  if (!own.is_none()) {
-    sample = [&](double first, double last, int count) {
-      return colors_of(own(first, last, count));
-    };
-  }
-  foreign::SampleWay sample_way;
-  if (!way.is_none()) {
-    sample_way = [&](const Rgb<double>& from, const Rgb<double>& to, int count) {
-      return colors_of(way(to_tuple(from), to_tuple(to), count));
-    };
-  }
-  const foreign::FittedCurve fitted = foreign::fit(function, deviation, sample_way, sample);
-  py::array_t<double> points({fitted.points.size(), std::size_t{4}});
-  double* to = points.mutable_data();
-  for (const auto& [x, y] : fitted.points) {
-    for (const double number : {x, y.r, y.g, y.b}) *to++ = number;
-  }
-  return py::make_tuple(points, fitted.deviation, fitted.is_coarse, fitted.has_no_number);
-}
-
 }  // namespace
 
 void bind_foreign_functions(py::module_& module) {
@@ -133,8 +80,6 @@ encoding of the format; deviation limits a fit. Raises Error that names the posi
              py::arg("format"), py::arg("deviation") = 1e-4, R"(
 Returns a function in another program's format: "slicer", "paraview" or "table" (CSV). Warns of
 what the format cannot hold.)");
-  // For pellucid.vtk alone.
-  module.def("_fit_vtk_function", &fit_vtk_function);
 }
 
 }  // namespace pellucid::python

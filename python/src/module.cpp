@@ -29,6 +29,7 @@ PYBIND11_MODULE(_pellucid, module) {
   bind_files(module);
   bind_segments(module);
   bind_viewers(module);
+  bind_vtk_scenes(module);
   // What users see belongs to the package.
   for (const auto& [name, object] : py::dict(module.attr("__dict__"))) {
     if (PyType_Check(object.ptr()) != 0) object.attr("__module__") = "pellucid";

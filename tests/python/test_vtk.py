@@ -155,9 +155,9 @@ def test_cropping(stage):
     stage.mapper.SetCroppingRegionPlanes(
         *(low + length * ((wanted - low) / length * (n - 1) / n + 0.5 / n)))
     assert audit.ours.compare(pellucid.vtk.audit(stage.window).theirs).rms < 2e-3
+    # Of 27 boxes few are left, for each of which there is a layer.
     stage.mapper.SetCroppingRegionFlagsToFence()
-    with pytest.raises(pellucid.Error, match="cropped"):
-        pellucid.vtk.scene_of(stage.renderer)
+    assert len(pellucid.vtk.scene_of(stage.renderer, []).layers) == 7
 
 
 def test_light(stage):
@@ -341,12 +341,13 @@ def test_marks_that_have_no_counterpart():
     with pytest.raises(pellucid.Error, match="do not fill a box"):
         pellucid.vtk.scene_of(Stage(grid).renderer)
     grid.GetCellGhostArray().Fill(1)
-    assert not pellucid.vtk.scene_of(Stage(grid).renderer).layers[0].visible
+    with pytest.raises(pellucid.Error, match="show nothing"):
+        pellucid.vtk.scene_of(Stage(grid).renderer)
 
 
 def test_what_has_no_counterpart(stage):
     for change, words in [
-            (lambda s: s.mapper.SetBlendModeToMaximumIntensity(), "blends"),
+            (lambda s: s.mapper.SetBlendModeToAdditive(), "blends"),
             (lambda s: s.camera.SetWindowCenter(0.5, 0), "WindowCenter")]:
         other = Stage(image_of(ball()))
         change(other)

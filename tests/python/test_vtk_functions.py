@@ -254,6 +254,23 @@ def test_one_node_and_none():
             == [(3.0, 0.0, (0.0, 0.0, 0.0)), (10.0, 0.5, (1.0, 1.0, 1.0))])
 
 
+@pytest.mark.parametrize("space", ["HSV", "Lab", "Diverging"])
+def test_ramps_are_in_the_color_space_of_their_function(space):
+    """VTK puts the ends of a ramp into the function, and leaves the rest of it as it is."""
+    color = vtk.vtkColorTransferFunction()
+    getattr(color, f"SetColorSpaceTo{space}")()
+    renderer, volume = strip()
+    volume.SetProperty(property_of(constant(0.5), color))
+    scene = pellucid.vtk.scene_of(renderer, [], 1e-6)
+    scene.integration.tolerance = 1e-6
+    image = pellucid.render(scene)
+    renderer.GetRenderWindow().Render()
+    assert color.GetSize() == 2
+    truth = numpy.array([table_color(color, x) for x in places()])
+    assert abs(image.rgba[1][:, :3] - 0.5 * truth).max() <= 4e-6
+    assert space != "Lab" or abs(truth[128] - 0.5).max() > 0.03
+
+
 def test_discretized_colors_are_those_of_the_mappers():
     function = vtk.vtkDiscretizableColorTransferFunction()
     for x, *rgb in ((1, 0.9, 0.1, 0.2), (90, 0.1, 0.6, 0.95)):

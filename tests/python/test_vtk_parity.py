@@ -209,7 +209,7 @@ def test_independent_components_are_layers():
 
 
 def changes():
-    yield "mask", "has a mask", lambda s: s.mapper.SetMaskInput(image_of(ball()))
+    yield "mask", "labels are whole numbers", lambda s: s.mapper.SetMaskInput(image_of(ball()))
     yield "2D", "two variables", lambda s: (
         s.volume.GetProperty().SetTransferFunctionMode(1))
     yield "stereo", "two eyes", lambda s: s.window.StereoRenderOn()

@@ -19,7 +19,7 @@ inline constexpr int duplicate_cell = 1, hidden_point = 2, refined_cell = 8, hid
 
 /// The cells of a grid that are no ghosts.
 struct OwnCells {
-  std::array<int, 3> first{}, last{};  ///< of the box around them, in cells along each axis
+  std::array<int, 3> first{}, last{};  ///< ends of the box around them, in cells
   std::int64_t count = 0;
 };
 /// Returns them by the flags of all cells; `sides`: how many cells there are along each axis.
@@ -29,7 +29,7 @@ OwnCells own_cells(std::span<const unsigned char> flags, const std::array<int, 3
 /// block's or another process's, there for values and gradients at the border.
 struct GhostCells {
   OwnCells own;
-  std::array<int, 3> sides{};  ///< of the grid, in cells
+  std::array<int, 3> sides{};  ///< cells of the grid along each axis
   /// Returns a point of the grid, in the world of its data.
   std::function<Vec3<double>(const std::array<int, 3>& index)> point;
 };

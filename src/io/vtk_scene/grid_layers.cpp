@@ -67,7 +67,7 @@ class GridTranslator {
   FunctionReader reader_;
   Affine<double> world_from_data_;
   std::vector<Clip> own_clips_;  ///< around the cells that are no ghosts
-  std::size_t layers_ = 1;       ///< how many there will be
+  std::size_t layers_ = 1;       ///< number of those that there will be
 };
 
 std::optional<LayerProjection> GridTranslator::projection() const {
@@ -121,7 +121,8 @@ std::vector<TableLayer> GridTranslator::layers() {
   return cropped(made);
 }
 
-/// VTK's mappers measure the unit distance in the volume's own world, before its matrix.
+/// Returns the length of the volume's own unit in the world: VTK's mappers measure the unit
+/// distance before the volume's matrix.
 double GridTranslator::scale() {
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;
   for (const Vec3<double>& column : world_from_data_.matrix.column) {
@@ -171,7 +172,7 @@ LookRecipe GridTranslator::recipe_of(int component, const Volume& data, const Lo
   return recipe;
 }
 
-/// In the scene's world.
+/// Returns the length of the longest ray, in the scene's world.
 double GridTranslator::longest_ray(const Volume& data) const {
   const std::array<Vec3<double>, 8> corners = data.world_corners();
   double longest = 0;
@@ -189,8 +190,8 @@ Layer GridTranslator::placed_layer() {
   return layer;
 }
 
-/// The last component has the opacity. The first of two has the color, of four the first three are
-/// red, green and blue.
+/// Returns the layer: the last component has the opacity, the first of two the color; the first
+/// three of four are red, green and blue.
 Layer GridTranslator::dependent_layer() {
   refuse_dependent_components(volume_);
   Layer layer = placed_layer();
@@ -251,9 +252,9 @@ TableLayer GridTranslator::component_layer(int component) {
     // A factor's ratio is one of the extinction.
     recipe.opacity_deviation += gradients.deviation;
   }
-  const auto function = kept_.functions.find(recipe, function_of);
   made.table = opacity_table_of(recipe);
-  layer.content = VolumeContent{data, function, label_mask(recipe, component)};
+  layer.content =
+      VolumeContent{data, kept_.functions.find(recipe, function_of), label_mask(recipe, component)};
   if (layer.projection) {
     if (look.reflection) notes_.add("projections have no light");
     return made;

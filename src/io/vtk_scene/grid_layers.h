@@ -24,10 +24,10 @@ namespace pellucid::vtk_scene {
 /// An image or a rectilinear grid, and the array of it that a mapper shows.
 struct GridData {
   std::string class_name;  ///< VTK's, of the grid
-  int components = 0;      ///< of the array; 0: there is none
+  int components = 0;      ///< number of those of the array; 0: there is none
   int type = 0;            ///< VTK's number of the array's type
   std::string type_name{};
-  std::vector<std::array<double, 2>> ranges{};  ///< of the finite values of each component
+  std::vector<std::array<double, 2>> ranges{};  ///< ranges of the finite values of each component
   /// Returns the volume of a component.
   std::function<std::shared_ptr<const Volume>(int component)> volume{};
   std::optional<GhostCells> ghosts{};  ///< none: no cell is a ghost
@@ -49,7 +49,8 @@ struct GridVolume {
   Mask mask{};
 };
 
-/// A layer with the opacity table that its function is made of; none: it is made of none.
+/// A layer with the opacity table that fit_tables() makes its function of anew; none: it keeps its
+/// function.
 struct TableLayer {
   Layer layer;
   std::optional<OpacityTable> table{};

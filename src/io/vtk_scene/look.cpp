@@ -29,7 +29,7 @@ TransferFunction table(const LookRecipe& recipe) {
 /// Chords that stand for the product of two lines.
 constexpr int chords = 64;
 
-/// Opaque grey, as VTK shows averages: exact where the opacity is constant.
+/// Returns opaque grey, as VTK shows averages: exact where the opacity is constant.
 TransferFunction averages(const LookRecipe& recipe) {
   const double low = recipe.range[0], high = std::max(recipe.range[1], std::nextafter(low, 1e300));
   Curve opacities;

@@ -19,7 +19,8 @@ namespace pellucid::vtk_scene {
 
 /// Meaning of the opacities of a property of VTK.
 enum class OpacityMeaning {
-  per_unit_distance,  ///< of a layer as thick as the unit distance: images and rectilinear grids
+  per_unit_distance,  ///< that of a layer as thick as the unit distance: images and rectilinear
+                      ///< grids
   extinction,         ///< opacity / unit distance is the extinction: unstructured grids
   projected,          ///< of a ray, at the one number that it shows
   summed,             ///< opacity times the place in the data's range, per unit distance: a depth
@@ -31,10 +32,11 @@ struct LookRecipe {
   std::vector<JoinedPoint> points;  ///< opacity and color
   OpacityMeaning meaning = OpacityMeaning::per_unit_distance;
   double unit_distance = 1;
-  double weight = 1;              ///< multiplies the extinction
-  double tolerance = 0;           ///< that opacities are converted for; of sums, of a ray
-  std::array<double, 2> range{};  ///< of the data, where they are averaged or summed
-  double length = 0;              ///< of the longest ray in the unit distance's unit, for sums
+  double weight = 1;     ///< multiplies the extinction
+  double tolerance = 0;  ///< that opacities are converted for; of sums, of a ray
+  std::array<double, 2>
+      range{};        ///< least and largest of the data, where they are averaged or summed
+  double length = 0;  ///< that of the longest ray in the unit distance's unit, for sums
   double opacity_deviation = 0, color_deviation = 0;  ///< FittedCurve::deviation of the points
 
   bool operator==(const LookRecipe&) const = default;

@@ -25,8 +25,8 @@ struct Plane {
 struct FunctionSettings {
   foreign::ShapedFunction shape{};  ///< with all of its nodes, as they are
   foreign::SampleFunction own{};    ///< VTK's own values: opacities three times, or colors
-  foreign::SampleWay way{};         ///< of colors
-  bool is_indexed = false, is_discretized = false;  ///< of colors
+  foreign::SampleWay way{};         ///< VTK's ways of CIEDE2000; colors alone have them
+  bool is_indexed = false, is_discretized = false;  ///< colors alone are
 };
 
 /// Reflection of light by a component.
@@ -69,7 +69,7 @@ enum class Blend { composite, maximum, minimum, average, additive, isosurface, s
 
 /// Cropping of a vtkVolumeMapper.
 struct CroppingSettings {
-  int flags = 0;                   ///< of 27 regions: bit x + 3 y + 9 z
+  int flags = 0;                   ///< regions that are shown, of 27: bit x + 3 y + 9 z
   std::array<double, 6> planes{};  ///< xmin, xmax, ymin, ... in the world of the data
 };
 

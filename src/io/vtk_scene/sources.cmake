@@ -3,6 +3,7 @@ pellucid_io_sources(
   LATER
     cropping.cpp
     dependent_components.cpp
+    fit_tables.cpp
     functions.cpp
     ghost_cells.cpp
     grid_layers.cpp

@@ -18,9 +18,9 @@ constexpr int largest_shift = 16384;
 /// Largest number of pixels of the picture of which a camera's window is a part: it is kept whole.
 constexpr double largest_picture = 1e8;
 
-/// Twice what a window's center is away from the middle, in whole pixels: what the picture of which
-/// the window is a part is larger by. Where parts of a window begin and end between pixels, VTK
-/// rounds them to pixels, too.
+/// Returns twice what a window's center is away from the middle, in whole pixels: the picture of
+/// which the window is a part is larger by as much. Where parts of a window begin and end between
+/// pixels, VTK rounds them to pixels, too.
 int pixels_off(double center, int side, Notes& notes) {
   const double pixels = center * side;
   const double whole = std::round(pixels);

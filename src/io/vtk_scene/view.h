@@ -14,9 +14,9 @@ namespace pellucid::vtk_scene {
 /// A vtkCamera.
 struct CameraSettings {
   Vec3<double> position{}, focal_point{}, up{};
-  Vec3<double> direction{};  ///< of the projection, of length 1
+  Vec3<double> direction{};  ///< direction of the projection, of length 1
   bool is_parallel = false;  ///< ParallelProjection, whatever the matrix says
-  double aspect = 1;         ///< of the window's part
+  double aspect = 1;         ///< width / height of the window's part
   Matrix projection{};       ///< GetProjectionTransformMatrix(aspect, -1, 1)
   std::array<double, 2> shear{};
   bool is_off_axis = false;
@@ -50,7 +50,7 @@ struct RendererLights {
 
 /// Positions of a window buffer's depths along the view direction.
 struct Depths {
-  double near = 0, far = 0;  ///< of depth 0 and depth 1; far may be infinite
+  double near = 0, far = 0;  ///< distances of depth 0 and depth 1; far may be infinite
   bool is_parallel = false;
 
   /// Returns how far a depth from 0 to 1 is from the camera, along the view direction.
@@ -61,9 +61,9 @@ struct Depths {
 struct View {
   Camera camera;
   Depths depths;
-  ImageSize size;             ///< of the scene's picture
-  int width = 0, height = 0;  ///< of the window's part
-  int column = 0, row = 0;    ///< of the window's upper left pixel in the scene's picture
+  ImageSize size;             ///< pixels of the scene's picture
+  int width = 0, height = 0;  ///< pixels of the window's part
+  int column = 0, row = 0;    ///< place of the window's upper left pixel in the scene's picture
 
   /// Returns whether the picture is larger than the window's part.
   bool is_cut() const noexcept { return size.width != width || size.height != height; }
