@@ -2,6 +2,8 @@
 #include "vtk_volume_open.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -19,15 +21,11 @@
 #include "vtk_file_kind.h"
 #include "vtk_image_pieces.h"
 #include "vtk_module.h"
+#include "vtk_scene/hidden_places.h"
 
 namespace pellucid {
 
 namespace {
-
-// vtkDataSetAttributes.h, of VTK 9.
-constexpr unsigned hidden_point = 2;
-/// Flags of a cell that is hidden, or that another level refines.
-constexpr unsigned hidden_cell = 32 | 8;
 
 /// A legacy file's values are not compressed: one of bits has eight in a byte, and those of its
 /// cells can be an eighth of its points.
@@ -159,46 +157,17 @@ void override_placement(const ReadOptions& options, Volume::Description& descrip
   apply_overrides(options, description);
 }
 
-/// Returns whether a cell, or one of its corners, is hidden.
-bool is_cell_hidden(const VtkVolume& grid, std::size_t cell) {
-  if (!grid.cell_ghosts.empty() && (grid.cell_ghosts[cell] & hidden_cell) != 0) return true;
-  if (grid.point_ghosts.empty()) return false;
-  const auto nx = static_cast<std::size_t>(grid.points[0]);
-  const auto ny = static_cast<std::size_t>(grid.points[1]);
-  const std::size_t i = cell % (nx - 1), j = cell / (nx - 1) % (ny - 1),
-                    k = cell / (nx - 1) / (ny - 1);
-  for (std::size_t corner = 0; corner < 8; ++corner) {
-    const std::size_t point = i + corner % 2 + nx * (j + corner / 2 % 2 + ny * (k + corner / 4));
-    if ((grid.point_ghosts[point] & hidden_point) != 0) return true;
-  }
-  return false;
-}
-
-/// Which of the array's places are hidden; empty: none.
-std::vector<bool> hidden_places(const VtkVolume& grid, Centering centering, std::size_t count,
+/// Returns which of the array's places are hidden; empty: none.
+std::vector<bool> hidden_places(const VtkVolume& grid, Centering centering,
                                 const std::string& name) {
-  std::vector<bool> hidden(count);
-  bool any = false;
-  if (centering == Centering::cell) {
-    for (std::size_t cell = 0; cell < count; ++cell) {
-      hidden[cell] = is_cell_hidden(grid, cell);
-      any = any || hidden[cell];
-    }
-  } else {
-    // A hidden cell between points that are seen cannot be said with values at points.
-    for (const std::uint8_t flags : grid.cell_ghosts) {
-      if ((flags & hidden_cell) == 0) continue;
-      throw Error(name +
-                  ": hides cells (vtkGhostType), which values at points cannot show; choose an "
-                  "array of cells, or turn it into an unstructured grid");
-    }
-    for (std::size_t point = 0; point < grid.point_ghosts.size(); ++point) {
-      hidden[point] = (grid.point_ghosts[point] & hidden_point) != 0;
-      any = any || hidden[point];
-    }
-  }
-  if (!any) hidden.clear();
-  return hidden;
+  const auto flags = [](const std::vector<std::uint8_t>& given) -> vtk_scene::GhostFlags {
+    if (given.empty()) return std::nullopt;
+    return given;
+  };
+  std::array<int, 3> sides = grid.points;
+  for (int& side : sides) --side;
+  return vtk_scene::hidden_places(flags(grid.point_ghosts), flags(grid.cell_ghosts), sides,
+                                  centering == Centering::cell, name);
 }
 
 /// Returns the box of points around values, which stand at points or in cells.
@@ -305,10 +274,8 @@ OpenedVtkVolume open_here(const std::filesystem::path& path, const ReadOptions& 
   opened.reads_parts = static_cast<bool>(grid.read);
   opened.type = grid.value_type;
   if (opened.reads_parts) return opened;
-  const std::size_t places = std::visit([](const auto& v) { return v.size(); }, array.values) /
-                             static_cast<std::size_t>(array.components);
   if (!grid.point_ghosts.empty() || !grid.cell_ghosts.empty()) {
-    const std::vector<bool> hidden = hidden_places(grid, array.centering, places, name);
+    const std::vector<bool> hidden = hidden_places(grid, array.centering, name);
     if (!hidden.empty()) {
       array.values = without_hidden(array.values, hidden, array.components);
     }

@@ -411,12 +411,21 @@ TEST_F(VtkVolumes, WhatIsHiddenIsNan) {
   }
   XmlImage cells_hidden;
   cells_hidden.points = test::xml_array("UInt8", "p", numbers(60));
-  std::string of_cells = "32";
-  for (int i = 1; i < 24; ++i) of_cells += " 0";
-  cells_hidden.cells = test::xml_array("UInt8", "vtkGhostType", of_cells) +
-                       test::xml_array("Float32", "c", numbers(24));
-  EXPECT_TRUE(contains(refused(cells_hidden.text(), "p", "a.vti"), "hides cells"));
+  const auto hide_cell = [&](int hidden_one) {
+    std::string of_cells;
+    for (int i = 0; i < 24; ++i) of_cells += i == hidden_one ? "32 " : "0 ";
+    cells_hidden.cells = test::xml_array("UInt8", "vtkGhostType", of_cells) +
+                         test::xml_array("Float32", "c", numbers(24));
+  };
+  // Of 4 x 3 x 2 cells one at a corner has a point of its own, one at an edge has none.
+  hide_cell(1);
+  EXPECT_TRUE(contains(refused(cells_hidden.text(), "p", "a.vti"), "hides cells between others"));
+  EXPECT_TRUE(std::isnan(test::value_at(parse(cells_hidden.text(), "c", "a.vti"), 1, 0, 0)));
+  hide_cell(0);
   EXPECT_TRUE(std::isnan(test::value_at(parse(cells_hidden.text(), "c", "a.vti"), 0, 0, 0)));
+  const Volume corner = parse(cells_hidden.text(), "p", "a.vti");
+  EXPECT_TRUE(std::isnan(test::value_at(corner, 0, 0, 0)));
+  EXPECT_EQ(corner.statistics().nan, 1u);
   EXPECT_EQ(list_arrays(path("a.vti")).size(), 2u);
 }
 
