@@ -175,15 +175,9 @@ double Finish::growth() const noexcept {
 }
 
 void set_final_colors(Finish& finish, double window, double level, Notes& notes) {
-  const double scale = 1 / window, bias = 0.5 - level / window;
-  finish.scale = 1;
-  finish.bias = 0;
-  if (std::isfinite(scale) && std::isfinite(bias)) {
-    finish.scale = scale;
-    finish.bias = bias;
-  } else {
-    notes.add("the window of the final color is no width, and left out");
-  }
+  const auto [scale, bias] = final_colors(window, level, notes);
+  finish.scale = scale;
+  finish.bias = bias;
 }
 
 void set_threads(Settings& settings, int threads) {

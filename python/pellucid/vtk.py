@@ -15,7 +15,6 @@ use() needs the plug-in for VTK (plugins/vtk), which imports VTK.
 """
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from typing import Any, List, Sequence, Tuple
 
@@ -23,7 +22,7 @@ import numpy
 
 from ._pellucid import Error, Image, Renderer
 from ._pellucid import (  # type: ignore[attr-defined]
-    _vtk_has_ambient_light, _vtk_lights, _vtk_view)
+    _vtk_final_colors, _vtk_has_ambient_light, _vtk_lights, _vtk_view)
 from ._vtk_layers import is_a, items, layers_of, parts_of
 from ._vtk_picture import picture_of
 from .scene import Integration, Layer, Scene
@@ -244,11 +243,11 @@ def finished(renderer: Any, image: Image) -> Image:
         mapper = volume.GetMapper()
         if not hasattr(mapper, "GetFinalColorWindow"):
             break
-        window, level = mapper.GetFinalColorWindow(), mapper.GetFinalColorLevel()
-        if (window, level) == (1.0, 0.5) or not window or not math.isfinite(level / window):
+        scale, bias = _vtk_final_colors(mapper.GetFinalColorWindow(), mapper.GetFinalColorLevel())
+        if (scale, bias) == (1, 0):
             break
         rgba = numpy.array(image.rgba, dtype=numpy.float32)
-        rgba[..., :3] = rgba[..., :3] / window + (0.5 - level / window) * rgba[..., 3:]
+        rgba[..., :3] = scale * rgba[..., :3] + bias * rgba[..., 3:]
         return Image(rgba)
     return image
 

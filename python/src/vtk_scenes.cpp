@@ -360,6 +360,11 @@ void bind_vtk_scenes(py::module_& module) {
   module.def("_vtk_has_ambient_light", [](const py::object& renderer) {
     return vtk_scene::has_ambient_light(lights_of(VtkObject(renderer)));
   });
+  module.def("_vtk_final_colors", [](double window, double level) {
+    vtk_scene::Notes notes;
+    const auto [scale, bias] = vtk_scene::final_colors(window, level, notes);
+    return py::make_tuple(scale, bias);
+  });
   module.def("_vtk_hidden_places", &hidden_places);
   module.def("_vtk_shown_cells", &shown_cells);
   module.def("_vtk_placement", &placement_of);

@@ -175,6 +175,28 @@ TEST(VtkTranslation, MarksAreOfPointsOrOfCells) {
   EXPECT_THROW(hidden(true), Error);
 }
 
+TEST(VtkTranslation, AFaceBesideGhostsBelongsToTheCellsAboveIt) {
+  // Of 4 x 2 x 2 cells of size 1 the middle ones along x are its own.
+  std::vector<unsigned char> flags;
+  for (int i = 0; i < 16; ++i) flags.push_back(i % 4 == 1 || i % 4 == 2 ? 0 : duplicate_cell);
+  const std::array<int, 3> sides{4, 2, 2};
+  const GhostCells ghosts{own_cells(flags, sides), sides, [](const std::array<int, 3>& at) {
+                            return Vec3<double>{1.0 * at[0], 1.0 * at[1], 1.0 * at[2]};
+                          }};
+  const auto clips = clips_at_ghosts(ghosts, {}, "grid");
+  ASSERT_TRUE(clips && clips->size() == 2);
+  const auto& low = std::get<ClipPlane>((*clips)[0].shape);
+  const auto& high = std::get<ClipPlane>((*clips)[1].shape);
+  EXPECT_EQ(low.point.x, 1 - 0x1p-20);
+  EXPECT_EQ(high.point.x, 3 - 0x1p-20);
+  EXPECT_GT(low.normal.x, 0);
+  EXPECT_LT(high.normal.x, 0);
+  flags[0] = 0;
+  EXPECT_THROW(clips_at_ghosts({own_cells(flags, sides), sides, ghosts.point}, {}, "grid"), Error);
+  EXPECT_FALSE(clips_at_ghosts(
+      {own_cells(std::vector<unsigned char>(16, 1), sides), sides, ghosts.point}, {}, "grid"));
+}
+
 TEST(VtkTranslation, SpacingsBelow0TurnTheirAxis) {
   ImageSettings image;
   image.origin = {1, 2, 3};

@@ -90,7 +90,7 @@ def colors(stage, space, *nodes):
 
 
 def hues_that_do_not_wrap(stage):
-    colors(stage, "HSV").HSVWrapOff()
+    colors(stage, "HSV", (0, 0.9, 0.1, 0.2), (100, 0.8, 0.8, 0.1)).HSVWrapOff()
 
 
 def colors_outside_of_the_nodes(stage):
@@ -261,6 +261,7 @@ def label_map(stage):
     color.AddRGBPoint(0, 0, 1, 0)
     look(stage).SetLabelColor(1, color)
     look(stage).SetLabelScalarOpacity(2, opacities((0, 0), (100, 0.5)))
+    look(stage).SetLabelGradientOpacity(1, opacities((0, 0.5)))
 
 
 def odd_light(stage):
@@ -293,6 +294,13 @@ def lights_that_fade(stage):
         light.SetAttenuationValues(1, 0.01, 0)
         stage.renderer.AddLight(light)
     stage.renderer.TwoSidedLightingOff()
+
+
+def light_in_a_cone(stage):
+    lamp(stage)
+    light = stage.renderer.GetLights().GetItemAsObject(0)
+    light.PositionalOn()
+    light.SetConeAngle(30)
 
 
 def no_light(stage):
@@ -380,6 +388,7 @@ PICTURES = {
     "label map": label_map,
     "highlights": highlights,
     "lights that fade": lights_that_fade,
+    "light in a cone": light_in_a_cone,
     "no light": no_light,
     "odd light": odd_light,
     "dark light": dark_light,

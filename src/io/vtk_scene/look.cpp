@@ -218,4 +218,11 @@ GradientOpacity gradient_opacity_of(const Curve& curve) {
   return GradientOpacity(std::move(points), GradientOpacity::Unit::voxel);
 }
 
+FinalColors final_colors(double window, double level, Notes& notes) {
+  const double scale = 1 / window, bias = 0.5 - level / window;
+  if (std::isfinite(scale) && std::isfinite(bias)) return {scale, bias};
+  notes.add("the window of the final color is no width, and left out");
+  return {};
+}
+
 }  // namespace pellucid::vtk_scene

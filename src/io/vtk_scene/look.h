@@ -99,4 +99,12 @@ FittedCurve gradient_curve(const FunctionSettings& function, const RampRange& ra
 /// Returns it as the scene has it.
 GradientOpacity gradient_opacity_of(const Curve& curve);
 
+/// Window and level of VTK's final color: a color becomes scale · color + bias · opacity.
+struct FinalColors {
+  double scale = 1, bias = 0;
+};
+/// Returns what brings colors from level - window / 2 to level + window / 2 to 0 to 1. What is no
+/// window is left out, and `notes` say so.
+FinalColors final_colors(double window, double level, Notes& notes);
+
 }  // namespace pellucid::vtk_scene
