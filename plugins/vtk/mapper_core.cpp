@@ -252,7 +252,7 @@ void MapperCore::draw(vtkVolumeMapper& mapper,
                       const MaskImage& mask, vtkRenderer& renderer, vtkVolume& volume) {
   finish.shows_depths = mapper.GetBlendMode() == vtkVolumeMapper::ADDITIVE_BLEND;
   draw_layers(mapper, renderer, volume, [&](Notes& notes) {
-    const double share = parts.size() > 1 ? 0.5 / static_cast<double>(parts.size()) : 1;
+    const double share = function_share(parts.size());
     std::vector<TableLayer> layers;
     for (const auto& [data, part] : parts) {
       for (TableLayer& layer : layers_of(mapper, data, *part, mask, share * inner_tolerance(),

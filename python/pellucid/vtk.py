@@ -22,7 +22,7 @@ import numpy
 
 from ._pellucid import Error, Image, Renderer
 from ._pellucid import (  # type: ignore[attr-defined]
-    _vtk_final_colors, _vtk_has_ambient_light, _vtk_lights, _vtk_view)
+    _vtk_final_colors, _vtk_function_share, _vtk_has_ambient_light, _vtk_lights, _vtk_view)
 from ._vtk_layers import is_a, items, layers_of, parts_of
 from ._vtk_picture import picture_of
 from .scene import Integration, Layer, Scene
@@ -186,13 +186,11 @@ def scene_of(renderer: Any, notes: Any = None, tolerance: float = _DEFAULT_TOLER
         raise Error("renderer: has no vtkVolume; add one before its scene is asked for")
     ambient = _vtk_has_ambient_light(renderer)
     parts = [(volume, parts_of(volume, f"volume {i + 1}")) for i, volume in enumerate(volumes)]
-    count = sum(len(list_of_volume) for _, list_of_volume in parts)
+    share = tolerance * _vtk_function_share(sum(len(each) for _, each in parts))
     layers: List[Layer] = []
     for volume, list_of_volume in parts:
         for part in list_of_volume:
-            # The errors of functions of layers that overlap add, and double beside other layers.
-            made = layers_of(part, tolerance if count == 1 else tolerance * 0.5 / count, ambient,
-                             told)
+            made = layers_of(part, share, ambient, told)
             for layer in made:
                 layer.visible = bool(volume.GetVisibility() and part.volume.GetVisibility())
             layers += made

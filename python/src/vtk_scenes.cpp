@@ -360,6 +360,7 @@ void bind_vtk_scenes(py::module_& module) {
   module.def("_vtk_has_ambient_light", [](const py::object& renderer) {
     return vtk_scene::has_ambient_light(lights_of(VtkObject(renderer)));
   });
+  module.def("_vtk_function_share", &vtk_scene::function_share);
   module.def("_vtk_final_colors", [](double window, double level) {
     vtk_scene::Notes notes;
     const auto [scale, bias] = vtk_scene::final_colors(window, level, notes);

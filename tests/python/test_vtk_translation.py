@@ -102,7 +102,7 @@ def colors_outside_of_the_nodes(stage):
 
 
 def functions_that_end(stage):
-    colors(stage, "RGB").ClampingOff()
+    colors(stage, "RGB", (45, 0.9, 0.1, 0.2), (60, 0.1, 0.6, 0.95)).ClampingOff()
     look(stage).SetScalarOpacity(opacities((30, 0.1), (70, 0.2)))
     look(stage).GetScalarOpacity().ClampingOff()
 
@@ -122,8 +122,12 @@ def steps_that_mappers_leave_out(stage):
     look(stage).SetColor(function)
 
 
-def nearest_at_jumps(stage):
+def jumps(stage):
     look(stage).SetScalarOpacity(opacities((0, 0, 0.3, 1), (50, 0.1, 0.6, 1), (100, 0.5)))
+
+
+def nearest_at_jumps(stage):
+    jumps(stage)
     look(stage).SetInterpolationTypeToNearest()
 
 
@@ -365,6 +369,7 @@ PICTURES = {
     "CIEDE2000": lambda stage: colors(stage, "LabCIEDE2000"),
     "greys": greys,
     "a unit distance": lambda stage: look(stage).SetScalarOpacityUnitDistance(2.5),
+    "jumps": jumps,
     "nearest at jumps": nearest_at_jumps,
     "a unit distance that is none": lambda s: look(s).SetScalarOpacityUnitDistance(math.nan),
     "nearest where VTK has no number": nearest_where_vtk_has_no_number,

@@ -150,8 +150,7 @@ LookRecipe GridTranslator::recipe_of(int component, const Volume& data, const Lo
   if (shown == LayerProjection::mean) meaning = OpacityMeaning::averaged;
   const bool sums = mapper_.blend == Blend::additive;
   if (sums) meaning = OpacityMeaning::summed;
-  // The errors of layers' functions add, and double beside other layers.
-  const double share = layers_ > 1 ? 0.5 / static_cast<double>(layers_) : 1;
+  const double share = function_share(layers_);
   reader_ = FunctionReader(share * tolerance_, kept_.curves, notes_);
   LookRecipe recipe = look_recipe(look_of(component), meaning, share * tolerance_,
                                   data.voxel_size(), ramps, reader_, notes_);

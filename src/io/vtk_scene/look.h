@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -42,6 +43,11 @@ struct LookRecipe {
   bool operator==(const LookRecipe&) const = default;
 };
 
+/// Returns the part of a tolerance that the functions of one layer of several may take: errors of
+/// layers that overlap add, and double beside other layers.
+constexpr double function_share(std::size_t layers) noexcept {
+  return layers > 1 ? 0.5 / static_cast<double>(layers) : 1;
+}
 /// Returns the part of a tolerance that the functions of sums may take.
 constexpr double sum_tolerance(double tolerance) noexcept {
   return tolerance / 8;
