@@ -26,6 +26,15 @@ RayPart part_of(const Frame& frame, const DepthRequest& request) {
   return part;
 }
 
+/// Returns the scene without light, on which no optical depth depends. A shading stays beside
+/// gradient opacity.
+Scene without_light(Scene scene) {
+  for (Layer& layer : scene.layers) {
+    if (!layer.gradient_opacity) layer.shading.reset();
+  }
+  return scene;
+}
+
 }  // namespace
 
 std::vector<double> find_depths(const Scene& scene, const RenderOptions& options,
@@ -35,7 +44,8 @@ std::vector<double> find_depths(const Scene& scene, const RenderOptions& options
   const int threads =
       options.machine.threads > 0 ? options.machine.threads : default_thread_count();
   LayerSetups setups;
-  const Frame frame(scene, options, threads, setups);
+  const Scene unlit = without_light(scene);
+  const Frame frame(unlit, options, threads, setups);
   std::vector<double> found(requests.size(), std::numeric_limits<double>::infinity());
   constexpr std::size_t at_once = 64;
   parallel_for_ordered((requests.size() + at_once - 1) / at_once, threads, [&](std::size_t group) {
