@@ -52,7 +52,7 @@ class Check:
                 content = path.read_bytes()
             total.update(f"{name}\0{mode}\0{len(content)}\0".encode())
             total.update(content)
-        return total.hexdigest()
+        return total.hexdigest()[:40]
 
 
 @functools.cache
@@ -103,7 +103,7 @@ def read_passed(root):
     for number, line in enumerate(file.read_text().splitlines() if file.exists() else [], 1):
         if line.startswith("#") or not line.strip():
             continue
-        match = re.fullmatch(r"(\S+) ([0-9a-f]{64})", line)
+        match = re.fullmatch(r"(\S+) ([0-9a-f]{40})", line)
         if not match or match[1] in passed:
             raise ValueError(f".ci/passed:{number}: not a check's name and a hash: {line}")
         passed[match[1]] = match[2]
