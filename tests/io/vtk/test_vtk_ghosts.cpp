@@ -63,8 +63,7 @@ TEST_F(VtkGhosts, GhostLevelsAreGhosts) {
     write("b.vtm", xml_file("vtkMultiBlockDataSet",
                             "<vtkMultiBlockDataSet><DataSet index=\"0\" file=\"b.pvtu\"/>"
                             "</vtkMultiBlockDataSet>\n"));
-    const std::string error = error_of([&] { read_mesh(path("b.vtm")); });
-    EXPECT_TRUE(contains(error, "its part b.pvtu: its pieces have the array")) << error;
+    EXPECT_EQ(read_mesh(path("b.vtm")).grid.shapes.size(), 2U);
     // Levels of points are no values to show, in images neither.
     VtkPiece piece;
     std::string levels;

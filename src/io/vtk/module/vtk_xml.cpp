@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "pellucid/scene/error.h"
+#include "text/text.h"
 #include "vtk_compare_pieces.h"
 #include "vtk_gather.h"
 #include "vtk_polyhedra.h"
@@ -33,30 +34,45 @@ std::string kind_of(const std::filesystem::path& path, const VtkMessages& messag
   return kind;
 }
 
-/// Returns the files of the pieces of a list if it names levels of ghosts, which VTK converts in
-/// each piece, and then does not find, or if it does not name the flags of ghosts that they have,
-/// or if they have faces of polyhedra that VTK does not read in a list. Else returns none.
-std::vector<std::filesystem::path> pieces_alone(const std::filesystem::path& path,
-                                                const std::string& kind,
-                                                const CheckedVtkXml& checked) {
-  if (kind != "PUnstructuredGrid") return {};
+/// Returns the path of a file that a list beside it names. Throws Error where there is none.
+std::filesystem::path beside(const std::filesystem::path& list, const std::string& name) {
+  const std::filesystem::path file = list.parent_path() / name;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    throw Error("names " + one_line(file.filename().string()) +
+                ", which is not there; put it beside it");
+  }
+  return file;
+}
+
+/// Appends the files that a list's elements `name` give in the attribute `attribute`, however deep
+/// in blocks they lie. An element without it stands for an empty block.
+void list_files(vtkXMLDataElement& list, const std::string& name, const char* attribute,
+                std::vector<std::string>& files) {
+  for (int i = 0; i < list.GetNumberOfNestedElements(); ++i) {
+    vtkXMLDataElement& element = *list.GetNestedElement(i);
+    const char* const file = element.GetName() == name ? element.GetAttribute(attribute) : nullptr;
+    if (file != nullptr && *file != '\0') files.emplace_back(file);
+    list_files(element, name, attribute, files);
+  }
+}
+
+/// Returns the files that a list of this kind names; none: it is no list. They are read one by one,
+/// for VTK (until 9.3 at least) makes faces of polyhedra out of types of cells that it has not read
+/// yet when it reads a PUnstructuredGrid, does not find the levels of ghosts that it converts in
+/// each piece, leaves out arrays that the list does not name, and knows one form of polyhedra.
+std::vector<std::string> listed_files(const std::filesystem::path& path, const std::string& kind) {
+  const bool of_pieces = kind == "PUnstructuredGrid";
+  if (!of_pieces && kind != "vtkMultiBlockDataSet") return {};
   const auto root =
       vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
   vtkXMLDataElement* const list =
       root == nullptr ? nullptr : root->FindNestedElementWithName(kind.c_str());
-  if (list == nullptr) return {};
-  bool has_levels = checked.has_unlisted_ghosts || checked.has_face_lists;
-  std::vector<std::filesystem::path> files;
-  for (int i = 0; i < list->GetNumberOfNestedElements(); ++i) {
-    vtkXMLDataElement* const element = list->GetNestedElement(i);
-    const char* const source = element->GetAttribute("Source");
-    if (source != nullptr) files.push_back(path.parent_path() / source);
-    for (int a = 0; source == nullptr && a < element->GetNumberOfNestedElements(); ++a) {
-      const char* const name = element->GetNestedElement(a)->GetAttribute("Name");
-      has_levels = has_levels || (name != nullptr && std::string(name) == "vtkGhostLevels");
-    }
+  std::vector<std::string> files;
+  if (list != nullptr) {
+    list_files(*list, of_pieces ? "Piece" : "DataSet", of_pieces ? "Source" : "file", files);
   }
-  if (!has_levels) files.clear();
+  if (files.empty()) throw Error("names no file; it is empty or damaged");
   return files;
 }
 
@@ -80,6 +96,38 @@ void update_step(vtkXMLReader& reader, const MeshReadOptions& options,
 
 void read_data(const std::filesystem::path& path, const std::string& kind,
                const MeshReadOptions& options, const CheckVtkXml& check,
+               const VtkMessages& messages, MeshBlocks& mesh);
+
+/// Reads the files of a list, which was checked with them.
+void read_listed(const std::filesystem::path& path, const std::string& kind,
+                 const std::vector<std::string>& files, const CheckVtkXml& check,
+                 const VtkMessages& messages, MeshBlocks& mesh) {
+  for (const std::string& name : files) {
+    const std::filesystem::path file = beside(path, name);
+    try {
+      const std::string own = kind_of(file, messages);
+      if (kind == "PUnstructuredGrid" && own != "UnstructuredGrid") {
+        throw Error("holds " + own.substr(0, 40) + " in place of UnstructuredGrid");
+      }
+      if (own == "vtkMultiBlockDataSet") {
+        throw Error("is a list of blocks itself; name its files in the first list");
+      }
+      if (own.ends_with("PolyData")) {
+        const auto reader = vtkSmartPointer<vtkXMLGenericDataObjectReader>::New();
+        reader->SetFileName(file.c_str());
+        update(*reader, {}, messages, mesh.file);
+        if (reader->GetOutput() != nullptr) gather(*reader->GetOutput(), mesh);
+      } else {
+        read_data(file, own, {}, check, messages, mesh);
+      }
+    } catch (const Error& part) {
+      throw Error("its part " + one_line(file.filename().string()) + " " + part.what());
+    }
+  }
+}
+
+void read_data(const std::filesystem::path& path, const std::string& kind,
+               const MeshReadOptions& options, const CheckVtkXml& check,
                const VtkMessages& messages, MeshBlocks& mesh) {
   if (kind.ends_with("ImageData") || kind.ends_with("RectilinearGrid")) {
     throw Error("holds " + kind + ", a volume on a regular grid and no mesh; read it as one");
@@ -93,13 +141,9 @@ void read_data(const std::filesystem::path& path, const std::string& kind,
                 "; read are unstructured and structured grids and multiblock files of them");
   }
   const CheckedVtkXml checked = check(path);
-  if (const auto pieces = pieces_alone(path, kind, checked); !pieces.empty()) {
+  if (const auto files = listed_files(path, kind); !files.empty()) {
     refuse_time(options);
-    for (const std::filesystem::path& piece : pieces) {
-      const std::string own = kind_of(piece, messages);
-      if (own != "UnstructuredGrid") throw Error("has a piece that holds " + own.substr(0, 40));
-      read_data(piece, own, {}, check, messages, mesh);
-    }
+    read_listed(path, kind, files, check, messages, mesh);
     return;
   }
   if (kind == "UnstructuredGrid") {
@@ -125,7 +169,7 @@ void read_data(const std::filesystem::path& path, const std::string& kind,
 
 struct Step {
   double time;
-  std::filesystem::path file;
+  std::string file;
 };
 
 /// Returns the files of a .pvd, ascending by time.
@@ -148,7 +192,7 @@ std::vector<Step> steps_of(const std::filesystem::path& path, const VtkMessages&
         (entry->GetScalarAttribute("timestep", time) == 0 || !std::isfinite(time))) {
       throw Error("the timestep of " + std::string(file) + " is no number; correct the file");
     }
-    steps.push_back({time, path.parent_path() / file});
+    steps.push_back({time, file});
   }
   if (steps.empty()) throw Error("its Collection names no file; it is damaged");
   std::stable_sort(steps.begin(), steps.end(),
@@ -167,18 +211,14 @@ void read_collection(const std::filesystem::path& path, const MeshReadOptions& o
   const double time = times[nearest_step(times, options.time)];
   for (const Step& step : steps) {
     if (step.time != time) continue;
-    const std::string name = step.file.filename().string();
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(step.file, error)) {
-      throw Error("names " + name + ", which is not there; put it beside it");
-    }
+    const std::filesystem::path file = beside(path, step.file);
     try {
-      read_data(step.file, kind_of(step.file, messages), {}, check, messages, mesh);
+      read_data(file, kind_of(file, messages), {}, check, messages, mesh);
       if (mesh.file.times.size() > 1) {
         throw Error("has steps in time of its own, of which a list chooses none; give it alone");
       }
     } catch (const Error& part) {
-      throw Error(name + " " + part.what());
+      throw Error(one_line(file.filename().string()) + " " + part.what());
     }
   }
   mesh.file.times = times;

@@ -336,14 +336,6 @@ bool is_ghost_type(const VtkXmlArray& array, const VtkXmlFile& file) {
                                     (array.name == "vtkGhostLevels" && !is_structured(file.kind)));
 }
 
-bool has_face_lists(const VtkXmlFile& file) {
-  return std::ranges::any_of(file.pieces, [](const VtkXmlPiece& piece) {
-    return std::ranges::any_of(piece.arrays, [](const VtkXmlArray& array) {
-      return array.section == VtkSection::cells && array.name == "polyhedron_to_faces";
-    });
-  });
-}
-
 /// Returns whether a file has flags of ghosts that its list does not name, which VTK leaves out.
 bool has_unlisted_ghosts(const VtkXmlFile& file, const VtkXmlFile& list) {
   return std::ranges::any_of(file.pieces, [&](const VtkXmlPiece& piece) {
@@ -358,17 +350,16 @@ bool has_unlisted_ghosts(const VtkXmlFile& file, const VtkXmlFile& list) {
 
 /// Throws Error where the file of a piece contradicts its list.
 void check_listed_file(const VtkXmlFile& own, const VtkXmlPiece& piece, const VtkXmlFile& list,
-                       const IsVtkArrayWanted& is_wanted, CheckedVtkXml& checked) {
+                       const IsVtkArrayWanted& is_wanted) {
   if (own.times.size() > 1) {
     throw Error(
         "it has steps in time, of which a list of pieces chooses none; write the steps to "
         "files of their own");
   }
-  const bool has_ghosts = has_unlisted_ghosts(own, list);
   if (is_structured(own.kind)) {
     check_vtk_pieces(own, piece.extent, is_wanted);
     if (own.kind == "ImageData") check_place(own.place, list.place, piece.extent);
-    if (has_ghosts) {
+    if (has_unlisted_ghosts(own, list)) {
       throw Error(
           "it has the array \"vtkGhostType\", which the list of pieces does not name; add it "
           "to the list");
@@ -376,8 +367,6 @@ void check_listed_file(const VtkXmlFile& own, const VtkXmlPiece& piece, const Vt
   } else {
     for (const VtkXmlPiece& part : own.pieces) check_piece(own, part, is_wanted);
     check_alike(own.pieces, is_wanted);
-    checked.has_unlisted_ghosts = checked.has_unlisted_ghosts || has_ghosts;
-    checked.has_face_lists = checked.has_face_lists || has_face_lists(own);
   }
   for (const VtkXmlArray& array : list.listed) {
     if (array.type == "String" || !is_wanted_here(array, is_wanted)) continue;
@@ -404,7 +393,7 @@ void check_list(const fs::path& path, const VtkXmlFile& list, const IsVtkArrayWa
                              [](std::int64_t n) { return static_cast<int>(n); });
     }
     try {
-      check_listed_file(read_vtk_xml(file), piece, list, is_wanted, checked);
+      check_listed_file(read_vtk_xml(file), piece, list, is_wanted);
     } catch (const Error& error) {
       throw Error("its piece " + one_line(piece.source.substr(0, 200)) + ": " + error.what());
     }
@@ -413,7 +402,7 @@ void check_list(const fs::path& path, const VtkXmlFile& list, const IsVtkArrayWa
 
 CheckedVtkXml check_file(const fs::path& path, const IsVtkArrayWanted& is_wanted, int depth) {
   const VtkXmlFile file = read_vtk_xml(path);
-  CheckedVtkXml checked{file.times, false, has_face_lists(file), {}};
+  CheckedVtkXml checked{file.times, {}};
   if (depth > 0 && file.times.size() > 1) {
     throw Error("it has steps in time, of which a file that names it chooses none; give it alone");
   }
@@ -431,11 +420,7 @@ CheckedVtkXml check_file(const fs::path& path, const IsVtkArrayWanted& is_wanted
     const fs::path part = beside(path, name);
     if (depth >= deepest || !is_vtk_xml(part)) continue;
     try {
-      if (check_file(part, is_wanted, depth + 1).has_unlisted_ghosts) {
-        throw Error(
-            "its pieces have the array \"vtkGhostType\" or \"vtkGhostLevels\", which it does not "
-            "name; add it to the part, or give the part alone");
-      }
+      check_file(part, is_wanted, depth + 1);
     } catch (const Error& error) {
       throw Error("its part " + one_line(name.substr(0, 200)) + ": " + error.what());
     }

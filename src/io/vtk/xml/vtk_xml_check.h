@@ -21,12 +21,7 @@ struct ListedPiece {
 
 /// Contents that were found in a file.
 struct CheckedVtkXml {
-  std::vector<double> times;  ///< of its steps in time; empty: there are none
-  /// A piece of an unstructured grid flags ghosts, but the list of pieces does not name the array:
-  /// VTK shows them.
-  bool has_unlisted_ghosts = false;
-  /// Unstructured grids have faces of polyhedra in the form of VTK 9.4.
-  bool has_face_lists = false;
+  std::vector<double> times;        ///< of its steps in time; empty: there are none
   std::vector<ListedPiece> pieces;  ///< of a list of structured grids
 };
 
