@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "enum_names.h"
 #include "layer_light.h"
 #include "message.h"
 #include "moved_source.h"
@@ -14,13 +15,6 @@
 
 namespace pellucid {
 namespace {
-
-constexpr std::array<std::pair<LayerProjection, std::string_view>, 4> projections{{
-    {LayerProjection::maximum, "maximum"},
-    {LayerProjection::minimum, "minimum"},
-    {LayerProjection::mean, "mean"},
-    {LayerProjection::sum, "sum"},
-}};
 
 template <class... Bodies>
 struct Overloaded : Bodies... {
@@ -198,17 +192,11 @@ const ChannelTransferFunction* extinction_factor_of(const Layer& layer) noexcept
 }
 
 std::string_view projection_name(LayerProjection projection) noexcept {
-  for (const auto& [value, name] : projections) {
-    if (value == projection) return name;
-  }
-  return "unknown";
+  return name_of(projection_names, projection);
 }
 
 std::optional<LayerProjection> projection_from_name(std::string_view name) noexcept {
-  for (const auto& [value, known] : projections) {
-    if (known == name) return value;
-  }
-  return std::nullopt;
+  return value_of<LayerProjection>(projection_names, name);
 }
 
 const TransferFunction* univariate_in(const AnyTransferFunction& function) noexcept {

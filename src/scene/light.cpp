@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "enum_names.h"
 #include "message.h"
 #include "pellucid/scene/error.h"
 
@@ -48,7 +49,7 @@ void check_light(const Light& light, const std::string& where) {
 }
 
 std::string_view gradient_kind_name(GradientKind kind) noexcept {
-  return kind == GradientKind::smooth ? "smooth" : "field";
+  return name_of(gradient_kind_names, kind);
 }
 
 GradientOpacity::GradientOpacity(std::vector<Point> points, Unit unit, ChannelRef channel)

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "enum_names.h"
 #include "message.h"
 #include "pellucid/scene/error.h"
 
@@ -17,22 +18,6 @@ namespace {
 constexpr int largest_size = 65536;
 /// Largest component of a background, as in scene files.
 constexpr double largest_light = 1e30;
-
-constexpr std::array<std::pair<Method, std::string_view>, 13> methods{{
-    {Method::exact, "exact"},
-    {Method::rectangle, "rectangle"},
-    {Method::taylor, "taylor"},
-    {Method::midpoint, "midpoint"},
-    {Method::trapezoid, "trapezoid"},
-    {Method::simpson, "simpson"},
-    {Method::linear, "linear"},
-    {Method::preintegrated, "preintegrated"},
-    {Method::kniss, "kniss"},
-    {Method::gaussian, "gaussian"},
-    {Method::homogeneous, "homogeneous"},
-    {Method::average, "average"},
-    {Method::partial, "partial"},
-}};
 
 void require_finite(const Vec3<double>& v, const std::string& what) {
   for (int a = 0; a < 3; ++a) {
@@ -108,17 +93,11 @@ CameraFrame<double> make_camera_frame(const Camera& camera, ImageSize size) {
 }
 
 std::string_view method_name(Method method) noexcept {
-  for (const auto& [value, name] : methods) {
-    if (value == method) return name;
-  }
-  return "unknown";
+  return name_of(method_names, method);
 }
 
 std::optional<Method> method_from_name(std::string_view name) noexcept {
-  for (const auto& [value, known] : methods) {
-    if (known == name) return value;
-  }
-  return std::nullopt;
+  return value_of<Method>(method_names, name);
 }
 
 double Integration::set_tolerance(double wanted) {

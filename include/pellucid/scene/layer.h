@@ -93,6 +93,8 @@ using LayerContent =
 /// data that its clips keep. `mean` and `sum` are ∫ v ds by world length; mean divides it by the
 /// length of these parts.
 enum class LayerProjection { maximum, minimum, mean, sum };
+/// Names of the projections as in scene files.
+inline constexpr const char* projection_names[] = {"maximum", "minimum", "mean", "sum"};
 /// Returns the name of a projection as in scene files.
 std::string_view projection_name(LayerProjection projection) noexcept;
 /// Returns the projection of this name, or none.

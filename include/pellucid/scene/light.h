@@ -49,6 +49,8 @@ void check_light(const Light& light, const std::string& where);
 ///   has the mean of its tetrahedra's gradients, weighted by their volumes; linear between.
 /// - `field`: the gradient of the reconstructed data themselves, which jumps between cells.
 enum class GradientKind { smooth, field };
+/// Names of the kinds as in scene files.
+inline constexpr const char* gradient_kind_names[] = {"smooth", "field"};
 /// Returns the name of a kind as in scene files.
 std::string_view gradient_kind_name(GradientKind kind) noexcept;
 

@@ -61,6 +61,10 @@ enum class Method {
   average,
   partial
 };
+/// Names of the methods as in scene files.
+inline constexpr const char* method_names[] = {
+    "exact",         "rectangle", "taylor",   "midpoint",    "trapezoid", "simpson", "linear",
+    "preintegrated", "kniss",     "gaussian", "homogeneous", "average",   "partial"};
 /// Returns the name of a method as in scene files.
 std::string_view method_name(Method method) noexcept;
 /// Returns the method of this name, or none.

@@ -71,12 +71,7 @@ struct Channel {};
 /// Kind of a surface's colors; the member is the surface.
 struct Colors {};
 
-inline constexpr const char* gradient_kinds[] = {"smooth", "field"};
 inline constexpr const char* camera_projections[] = {"perspective", "orthographic"};
-inline constexpr const char* layer_projections[] = {"maximum", "minimum", "mean", "sum"};
-inline constexpr const char* methods[] = {
-    "exact",         "rectangle", "taylor",   "midpoint",    "trapezoid", "simpson", "linear",
-    "preintegrated", "kniss",     "gaussian", "homogeneous", "average",   "partial"};
 inline constexpr const char* grades[] = {"estimated", "proved"};
 inline constexpr const char* precisions[] = {"automatic", "float", "double"};
 inline constexpr const char* python_precisions[] = {"automatic", "float32", "float64"};
@@ -107,7 +102,7 @@ void visit_fields(S& s, const Visit& field) {
   field("diffuse", s.diffuse, Number{"a part of the shading", 0, largest});
   field("specular", s.specular, Number{"a part of the shading", 0, largest});
   field("power", s.power, Number{"the power of the shading", 1, largest});
-  field("gradient", s.gradient, Choice{gradient_kinds});
+  field("gradient", s.gradient, Choice{gradient_kind_names});
   field("flatness", s.flatness, Number{"the flatness of the shading", 0, largest});
   field("flat_gradient", s.flat_gradient, Number{"the flat gradient of the shading", 0, 1e38});
   field("channel", s.channel, Channel{});
@@ -150,7 +145,7 @@ void visit_fields(S& light, const Visit& field) {
   field({"position", "give a point [x, y, z] of the world"}, light.position, Vector{"a position"});
 }
 
-/// What lights of all kinds have.
+/// Visits the fields that lights of all kinds have.
 template <Part<Light> S, class Visit>
 void visit_fields(S& light, const Visit& field) {
   field("color", light.color, Color{"the color of a light"});
@@ -203,7 +198,7 @@ void visit_fields(S& camera, const Visit& field) {
 
 template <Part<Integration> S, class Visit>
 void visit_fields(S& s, const Visit& field) {
-  field("method", s.method, Choice{methods, {}, "\"exact\" or a sampling method"});
+  field("method", s.method, Choice{method_names, {}, "\"exact\" or a sampling method"});
   field({"tolerance", nullptr, !s.relative_tolerance}, s.tolerance,
         Number{"the tolerance", smallest_tolerance, largest_tolerance});
   field("relative_tolerance", s.relative_tolerance, InPlace{"tolerance", "the tolerance", 1});

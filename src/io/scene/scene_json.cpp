@@ -79,7 +79,7 @@ void read_data(const Node& node, const std::filesystem::path& folder, LayerDescr
 }
 
 LayerProjection read_projection(const Node& node, const LayerDescription& layer) {
-  const auto& names = scene_fields::layer_projections;
+  const auto& names = projection_names;
   const auto projection =
       static_cast<LayerProjection>(node.one_of({std::begin(names), std::end(names)}));
   if (scene_json::multivariate_of(layer) != nullptr || !layer.channels.empty() ||
