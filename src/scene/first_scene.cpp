@@ -17,36 +17,38 @@ std::shared_ptr<const Object> present(Shared<Object> shared, const char* what) {
   return std::move(shared.object);
 }
 
-/// Gives the layer the parts of a look beside its function.
-void put_on(Look& look, Layer& layer) {
-  layer.shading = look.shading;
-  layer.isosurfaces = std::move(look.isosurfaces);
-}
-
-std::shared_ptr<const TransferFunction> function_of(Look& look) {
-  return std::make_shared<const TransferFunction>(std::move(look.transfer_function));
+std::shared_ptr<const TransferFunction> function_of(const Look& look) {
+  return std::make_shared<const TransferFunction>(look.transfer_function);
 }
 
 }  // namespace
 
+void put_look(Look look, Layer& layer) {
+  if (look.as_labels) {
+    LabelContent content;
+    content.labels =
+        std::make_shared<const LabelVolume>(std::get<VolumeContent>(layer.content).volume);
+    content.table = std::make_shared<const LabelTable>(default_label_table(*content.labels));
+    layer.content = std::move(content);
+    layer.shading.reset();
+    return;
+  }
+  layer.shading = look.shading;
+  layer.isosurfaces = std::move(look.isosurfaces);
+}
+
 Layer::Layer(Shared<Volume> volume) {
   const std::shared_ptr<const Volume> data = present(std::move(volume), "the volume");
   Look look = choose_look(*data);
-  if (look.as_labels) {
-    const auto labels = std::make_shared<const LabelVolume>(data);
-    content =
-        LabelContent{labels, std::make_shared<const LabelTable>(default_label_table(*labels))};
-    return;
-  }
   content = VolumeContent{data, function_of(look)};
-  put_on(look, *this);
+  put_look(std::move(look), *this);
 }
 
 Layer::Layer(Shared<MeshChannels> mesh) {
   const std::shared_ptr<const MeshChannels> data = present(std::move(mesh), "the mesh");
   Look look = choose_look(*data);
   content = MeshContent{data, function_of(look)};
-  put_on(look, *this);
+  put_look(std::move(look), *this);
 }
 
 Layer::Layer(Shared<Volume> volume, Shared<TransferFunction> function)

@@ -14,6 +14,8 @@
 
 namespace pellucid {
 
+struct Layer;
+
 /// A way to show data of one kind at first.
 struct LookName {
   std::string_view name;         ///< such as "ct"
@@ -67,6 +69,10 @@ Look choose_look(const Volume& volume, std::string_view name = {},
 /// which four fifths are background, that is clear.
 Look choose_look(const MeshChannels& mesh, std::string_view name = {},
                  const FunctionChange& change = {});
+
+/// Gives a layer that has its data and its function the shading and the surfaces of a look, or the
+/// labels of default_label_table() in place of its function.
+void put_look(Look look, Layer& layer);
 
 /// Returns the value of air if the data seem to be in Hounsfield units (-1000), or in those plus
 /// about 1024 (24); none: they do not.

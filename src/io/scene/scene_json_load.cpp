@@ -336,22 +336,6 @@ class LookLoader {
   std::vector<std::string> names_;
 };
 
-/// Puts a look into a layer that has its data and its function.
-void put(Look look, const WantedLook& wanted, Layer& layer) {
-  if (wanted.chosen) wanted.chosen(look);
-  if (look.as_labels) {
-    LabelContent content;
-    content.labels =
-        std::make_shared<const LabelVolume>(std::get<VolumeContent>(layer.content).volume);
-    content.table = std::make_shared<const LabelTable>(default_label_table(*content.labels));
-    layer.content = std::move(content);
-    layer.shading.reset();
-    return;
-  }
-  layer.isosurfaces = std::move(look.isosurfaces);
-  if (!wanted.keeps_shading) layer.shading = look.shading;
-}
-
 /// Takes the data of `loaded` unless it is null.
 Layer load_layer(const LayerDescription& description, const Wanted& wanted, const Layer* loaded,
                  const ParallelFor& parallel, MeshSource& mesh_used) {
@@ -368,7 +352,12 @@ Layer load_layer(const LayerDescription& description, const Wanted& wanted, cons
   }
   if (!look) change_function(description, layer);
   LookLoader(description, layer)();
-  if (look) put(*std::move(look), *description.look, layer);
+  if (look) {
+    const WantedLook& wanted_look = *description.look;
+    if (wanted_look.chosen) wanted_look.chosen(*look);
+    if (wanted_look.keeps_shading) look->shading = layer.shading;
+    put_look(*std::move(look), layer);
+  }
   return layer;
 }
 
