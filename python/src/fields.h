@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <span>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 #include "common.h"
 #include "scene/scene_fields.h"
 
 namespace pellucid::python {
 
+/// Returns a class of the module pellucid.scene.
+py::object scene_class(const char* name);
 /// Returns a text. Throws Error that begins with `what`, as the following do.
 std::string text_of(const py::object& object, const std::string& what);
 /// Returns a whole number from 0.
@@ -80,6 +81,13 @@ class FieldWriter {
  private:
   py::dict* arguments_;
 };
+
+/// Returns an object of a class of pellucid.scene with the fields of a part, beside `arguments`.
+template <class Part>
+py::object object_of(const char* name, const Part& part, py::dict arguments = {}) {
+  scene_fields::visit_fields(part, FieldWriter(arguments));
+  return scene_class(name)(**arguments);
+}
 
 /// Returns a part that is read from a Python object.
 template <class Part>

@@ -248,9 +248,9 @@ Layer layer_of(const py::object& object, const std::string& what, LayerDescripti
   layer.transform = transform_of(object.attr("transform"), what + ": transform");
   layer.clips = list_of(object.attr("clips"), what + ": clip", clip_of);
   if (const py::object projection = object.attr("projection"); !projection.is_none()) {
-    layer.projection = static_cast<LayerProjection>(
-        choice(projection, what + ": projection", scene_fields::layer_projections,
-               "\"maximum\", \"minimum\", \"mean\" or \"sum\""));
+    layer.projection =
+        static_cast<LayerProjection>(choice(projection, what + ": projection", projection_names,
+                                            "\"maximum\", \"minimum\", \"mean\" or \"sum\""));
   }
   if (const py::object shading = object.attr("shading"); !shading.is_none()) {
     layer.shading = shading_of(shading, what + ": shading");
@@ -284,11 +284,8 @@ void fit_tables(PythonScene& made, const py::object& layers) {
     if (!py::isinstance<OpacityTableHandle>(function)) continue;
     const auto& handle = py::cast<const OpacityTableHandle&>(function);
     const auto share = [&](std::shared_ptr<const TransferFunction>& fitted) {
-      const auto same = [](const TransferFunction::Point& a, const TransferFunction::Point& b) {
-        return a.value == b.value && a.extinction == b.extinction && a.color == b.color;
-      };
       if (handle.fitted && handle.fitted->relative_error() == fitted->relative_error() &&
-          std::ranges::equal(handle.fitted->points(), fitted->points(), same)) {
+          handle.fitted->points() == fitted->points()) {
         fitted = handle.fitted;
       } else {
         handle.fitted = fitted;

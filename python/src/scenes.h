@@ -30,5 +30,11 @@ SceneDescription described(const PythonScene& scene);
 py::object to_python(const Scene& scene, const SceneDescription& description);
 /// Returns pellucid.Camera.
 py::object to_python(const Camera& camera);
+/// Returns pellucid.HeadLight, DirectionalLight or PointLight.
+py::object to_python(const Light& light);
+/// Returns pellucid.ClipPlane, ClipBox, ClipSphere or ClipCylinder.
+py::object to_python(const Clip& clip);
+/// Returns the arguments of pellucid.Layer for all of a layer but its data, functions and labels.
+py::dict look_arguments(const Layer& layer);
 
 }  // namespace pellucid::python

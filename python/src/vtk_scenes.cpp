@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "fields.h"
 #include "handles.h"
 #include "scenes.h"
 #include "vtk_objects.h"
@@ -15,32 +16,6 @@
 namespace pellucid::python {
 
 namespace {
-
-py::object scene_type(const char* name) {
-  return py::module_::import("pellucid.scene").attr(name);
-}
-
-py::object plane_of(const Clip& clip) {
-  const auto& plane = std::get<ClipPlane>(clip.shape);
-  return scene_type("ClipPlane")(to_tuple(plane.point), to_tuple(plane.normal));
-}
-
-py::list planes_of(const std::vector<Clip>& clips) {
-  py::list planes;
-  for (const Clip& clip : clips) planes.append(plane_of(clip));
-  return planes;
-}
-
-py::object light_object(const Light& light) {
-  const py::tuple color = to_tuple(light.color);
-  if (const auto* const far = std::get_if<DirectionalLight>(&light.kind)) {
-    return scene_type("DirectionalLight")(to_tuple(far->direction), color);
-  }
-  if (const auto* const point = std::get_if<PointLight>(&light.kind)) {
-    return scene_type("PointLight")(to_tuple(point->position), color);
-  }
-  return scene_type("HeadLight")(color);
-}
 
 /// Adds lines to a list of Python, each once, that say which volume they are about.
 void add(const vtk_scene::Notes& notes, const std::string& what, py::list& list) {
@@ -71,34 +46,10 @@ class LayerMaker {
       : what_(std::move(what)), data_(std::move(data)) {}
 
   py::object layer(const vtk_scene::TableLayer& made) const {
-    const Layer& layer = made.layer;
-    py::dict parts;
-    add_content(made, parts);
+    py::dict parts = look_arguments(made.layer);
     parts["name"] = what_;
-    const auto& map = layer.transform;
-    const auto row = [&](int r) {
-      return py::make_tuple(map.matrix.column[0][r], map.matrix.column[1][r],
-                            map.matrix.column[2][r], map.translation[r]);
-    };
-    parts["transform"] = py::make_tuple(row(0), row(1), row(2));
-    parts["clips"] = planes_of(layer.clips);
-    if (layer.projection) parts["projection"] = std::string(projection_name(*layer.projection));
-    if (const auto& s = layer.shading) {
-      parts["shading"] =
-          scene_type("Shading")(s->ambient, s->diffuse, s->specular, s->power,
-                                std::string(gradient_kind_name(s->gradient)), s->flatness);
-    }
-    if (layer.gradient_opacity) parts["gradient_opacity"] = held(layer.gradient_opacity);
-    py::list isosurfaces, slices;
-    for (const Isosurface& s : layer.isosurfaces) {
-      isosurfaces.append(scene_type("Isosurface")(s.value, to_tuple(s.color), s.opacity));
-    }
-    for (const Slice& s : layer.slices) {
-      slices.append(scene_type("Slice")(to_tuple(s.point), to_tuple(s.normal), s.opacity));
-    }
-    parts["isosurfaces"] = isosurfaces;
-    parts["slices"] = slices;
-    return scene_type("Layer")(**parts);
+    add_content(made, parts);
+    return scene_class("Layer")(**parts);
   }
 
  private:
@@ -271,10 +222,11 @@ py::tuple camera_view(const py::object& renderer,
   vtk_scene::Notes notes;
   const vtk_scene::View view = vtk_scene::view_of(view_settings_of(VtkObject(renderer)), notes);
   add(notes, "", list);
-  return py::make_tuple(
-      to_python(view.camera),
-      planes_of(bounds ? vtk_scene::depth_clips(view, *bounds) : std::vector<Clip>()),
-      view.is_cut());
+  py::list clips;
+  if (bounds) {
+    for (const Clip& clip : vtk_scene::depth_clips(view, *bounds)) clips.append(to_python(clip));
+  }
+  return py::make_tuple(to_python(view.camera), clips, view.is_cut());
 }
 
 py::list lights_in(const py::object& renderer, bool is_lit, py::list& list) {
@@ -283,7 +235,7 @@ py::list lights_in(const py::object& renderer, bool is_lit, py::list& list) {
   py::list made;
   for (const Light& light :
        vtk_scene::lights_of(lights_of(object), view_settings_of(object).camera, is_lit, notes)) {
-    made.append(light_object(light));
+    made.append(to_python(light));
   }
   add(notes, "", list);
   return made;

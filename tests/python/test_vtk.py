@@ -155,7 +155,7 @@ def test_cropping(stage):
     stage.mapper.SetCroppingRegionPlanes(
         *(low + length * ((wanted - low) / length * (n - 1) / n + 0.5 / n)))
     assert audit.ours.compare(pellucid.vtk.audit(stage.window).theirs).rms < 2e-3
-    # Of 27 boxes few are left, for each of which there is a layer.
+    # A few boxes together cover the regions, with one layer each.
     stage.mapper.SetCroppingRegionFlagsToFence()
     assert len(pellucid.vtk.scene_of(stage.renderer, []).layers) == 7
 
