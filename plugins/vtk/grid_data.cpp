@@ -246,40 +246,37 @@ std::uint64_t fingerprint_of(vtkDataArray& array, int component) {
   return state;
 }
 
+bool KeptGrids::Recipe::operator==(const Recipe& other) const {
+  return array == other.array && memory == other.memory && time == other.time &&
+         fingerprint == other.fingerprint && values == other.values &&
+         component == other.component && ghosts == other.ghosts && same_grid(grid, other.grid);
+}
+
 std::shared_ptr<const Volume> KeptGrids::find(vtkDataSet& data, vtkDataArray& array, bool of_cells,
                                               int component) {
   const char* const name = array.GetName();
   Volume::Description grid =
       grid_of(data, of_cells, name != nullptr && *name != '\0' ? name : data.GetClassName());
-  const void* const memory = memory_of(array);
-  const std::uint64_t fingerprint = fingerprint_of(array, component);
-  const GhostTimes ghosts = ghost_times(data);
   const std::array<bool, 3> descends = descending_axes(grid);
   turn_coordinates(grid, descends);
-  for (Kept& kept : kept_) {
-    if (kept.array == &array && kept.memory == memory && kept.time == array.GetMTime() &&
-        kept.fingerprint == fingerprint && kept.values == array.GetNumberOfValues() &&
-        kept.component == component && kept.ghosts == ghosts &&
-        same_grid(kept.volume->description(), grid)) {
-      kept.used = true;
-      return kept.volume;
+  const Recipe recipe{&array,
+                      memory_of(array),
+                      array.GetMTime(),
+                      fingerprint_of(array, component),
+                      array.GetNumberOfValues(),
+                      component,
+                      ghost_times(data),
+                      std::move(grid)};
+  return kept_.find(recipe, [&](const Recipe& wanted) {
+    VolumeData values = component_of(array, component);
+    if (const std::vector<bool> hidden = hidden_places(data, of_cells); !hidden.empty()) {
+      values = without_hidden(values, hidden);
     }
-  }
-  ++made_;
-  VolumeData values = component_of(array, component);
-  if (const std::vector<bool> hidden = hidden_places(data, of_cells); !hidden.empty()) {
-    values = without_hidden(values, hidden);
-  }
-  if (descends != std::array<bool, 3>{}) values = turned(values, grid.dimensions, descends);
-  auto volume = std::make_shared<const Volume>(std::move(grid), std::move(values));
-  kept_.push_back({&array, memory, array.GetMTime(), fingerprint, array.GetNumberOfValues(),
-                   component, ghosts, std::move(volume)});
-  return kept_.back().volume;
-}
-
-void KeptGrids::keep_used() {
-  std::erase_if(kept_, [](const Kept& kept) { return !kept.used; });
-  for (Kept& kept : kept_) kept.used = false;
+    if (descends != std::array<bool, 3>{}) {
+      values = turned(values, wanted.grid.dimensions, descends);
+    }
+    return Volume(wanted.grid, std::move(values));
+  });
 }
 
 }  // namespace pellucid::plugin

@@ -38,12 +38,12 @@ class KeptGrids {
   std::shared_ptr<const Volume> find(vtkDataSet& data, vtkDataArray& array, bool of_cells,
                                      int component);
   /// Forgets what was not asked for since the last call.
-  void keep_used();
+  void keep_used() { kept_.keep_used(); }
   /// Returns how many volumes were made so far.
-  int made() const noexcept { return made_; }
+  int made() const noexcept { return kept_.made(); }
 
  private:
-  struct Kept {
+  struct Recipe {
     vtkSmartPointer<vtkDataArray> array;
     const void* memory = nullptr;
     vtkMTimeType time = 0;
@@ -51,11 +51,11 @@ class KeptGrids {
     vtkIdType values = 0;
     int component = 0;
     GhostTimes ghosts;
-    std::shared_ptr<const Volume> volume;
-    bool used = true;
+    Volume::Description grid;
+
+    bool operator==(const Recipe& other) const;
   };
-  std::vector<Kept> kept_;
-  int made_ = 0;
+  Kept<Recipe, Volume> kept_;
 };
 
 }  // namespace pellucid::plugin

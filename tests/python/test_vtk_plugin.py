@@ -48,6 +48,16 @@ def soft(unit=1.0):
     return made
 
 
+def hexahedra():
+    """An image as an unstructured grid."""
+    threshold = vtk.vtkThreshold()
+    threshold.SetInputData(image_of(smooth(shape=(9, 9, 9))))
+    threshold.SetLowerThreshold(-1e9)
+    threshold.SetUpperThreshold(1e9)
+    threshold.Update()
+    return threshold.GetOutput()
+
+
 class Stage:
     def __init__(self, mapper, data=None, size=(96, 64)):
         self.mapper = mapper
@@ -252,12 +262,7 @@ def test_rectilinear_grids_and_cells_agree():
 
 
 def test_unstructured_grids_agree():
-    threshold = vtk.vtkThreshold()
-    threshold.SetInputData(image_of(smooth(shape=(9, 9, 9))))
-    threshold.SetLowerThreshold(-1e9)
-    threshold.SetUpperThreshold(1e9)
-    threshold.Update()
-    stage = Stage(plugin.vtkPellucidUnstructuredGridMapper(), threshold.GetOutput())
+    stage = Stage(plugin.vtkPellucidUnstructuredGridMapper(), hexahedra())
     assert stage.off() <= tolerance_of(stage)
 
 
@@ -376,12 +381,7 @@ def test_environment_variables():
 
 def test_cells_that_change_are_read_anew():
     """The time of a grid leaves out that of its cells."""
-    threshold = vtk.vtkThreshold()
-    threshold.SetInputData(image_of(smooth(shape=(9, 9, 9))))
-    threshold.SetLowerThreshold(-1e9)
-    threshold.SetUpperThreshold(1e9)
-    threshold.Update()
-    grid = threshold.GetOutput()
+    grid = hexahedra()
     stage = Stage(plugin.vtkPellucidUnstructuredGridMapper(), grid)
     whole = stage.picture()
     ids = numpy.array(grid.GetCells().GetConnectivityArray())

@@ -23,7 +23,7 @@ plugin = pytest.importorskip("pellucid.vtkPellucid",
 from vtkmodules.util.misc import calldata_type  # noqa: E402
 
 from test_vtk_plugin import (Stage, cropped, dependent, dependent_colors, gradient,  # noqa: E402
-                             image_of, lamp, lamp_and_head_light, moved)
+                             hexahedra, image_of, lamp, lamp_and_head_light, moved)
 
 # A step of the display, which also interpolates between texels.
 STEP = 1.05 / 32767
@@ -505,15 +505,6 @@ def test_refusals_are_the_same(name):
     with pytest.raises(pellucid.Error) as refused:
         pellucid.vtk.scene_of(stage.renderer, [])
     assert [str(refused.value).removeprefix("volume 1: ")] == errors
-
-
-def hexahedra():
-    threshold = vtk.vtkThreshold()
-    threshold.SetInputData(image_of(smooth(shape=(9, 9, 9))))
-    threshold.SetLowerThreshold(-1e9)
-    threshold.SetUpperThreshold(1e9)
-    threshold.Update()
-    return threshold.GetOutput()
 
 
 def flags(values, attributes):

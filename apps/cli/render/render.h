@@ -62,6 +62,11 @@ struct RenderArguments {
   }
 };
 
+/// Returns whether an error comes with a picture by these.
+inline bool knows_its_error(const RenderArguments& arguments, const Integration& integration) {
+  return !arguments.reference && integration.method == Method::exact;
+}
+
 /// The scene, and what is told of how it came about.
 struct PreparedScene {
   Scene scene;
@@ -84,7 +89,7 @@ struct PreparedScene {
 
   /// Returns whether an error comes with the picture.
   bool knows_its_error(const RenderArguments& arguments) const {
-    return !arguments.reference && scene.integration.method == Method::exact;
+    return cli::knows_its_error(arguments, scene.integration);
   }
 };
 

@@ -91,10 +91,7 @@ class RankRun {
     agreed_on_arguments([&] {
       request = request_scene(arguments_);
       const Integration& integration = request.prepared.description.integration;
-      if (!integration.relative_tolerance || integration.method != Method::exact ||
-          arguments_.reference) {
-        return;
-      }
+      if (!integration.relative_tolerance || !knows_its_error(arguments_, integration)) return;
       throw UsageError(
           "--tolerance: a share of the picture's range is not found by --ranks; give " +
           std::string("a number"));

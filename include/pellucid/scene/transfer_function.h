@@ -49,6 +49,8 @@ class TransferFunction {
     double value = 0;       ///< in the data's unit
     double extinction = 0;  ///< 1/length in world units
     Rgb<double> color{};    ///< linear RGB of the particles, not premultiplied, >= 0
+
+    bool operator==(const Point&) const = default;
   };
 
   /// Throws Error if there is no point, values do not ascend (two equal ones are a jump, three an

@@ -69,9 +69,9 @@ class DeviceFrame {
         scene_(resident(frame)),
         task_(device.prepare(frame.scene.size, view_.depth != nullptr, view_.error != nullptr)) {}
 
-  void render(const ImageView& image) {
+  void render() {
     const std::vector<Tile> launches = make_launches(frame_.scene, options_);
-    Progress progress(options_, image, launches);
+    Progress progress(options_, view_, launches);
     for (const Tile& tile : launches) {
       if (options_.monitor.stop.stop_requested()) throw Cancelled();
       follow(tile);
@@ -200,7 +200,7 @@ std::string reason_for_cpu(const Frame& frame, const RenderOptions& options) {
 void render_on_device(const Frame& frame, const RenderOptions& options, CachedDevice& device,
                       const ImageView& image, RenderReport& report) {
   const std::lock_guard lock(device.in_use);
-  DeviceFrame(frame, options, device, image, report).render(image);
+  DeviceFrame(frame, options, device, image, report).render();
   device.arrays().end_frame();
   report.device = "rendered by " + device.backend().name();
   if (report.pixels_left > 0) {

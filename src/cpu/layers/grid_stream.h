@@ -17,7 +17,7 @@ inline double grid_position_error(double t) {
   return 8 * rounding_unit<double> * t;
 }
 
-/// BlockSegments through the blocks of a grid, and through the cells of those that are not skipped.
+/// Walks through the blocks of a grid, and through the cells of those that are not skipped.
 class GridStream : public LayerStream {
  public:
   /// All must outlive the stream. `axis`: of the cells to walk through, in the grid's coordinates.

@@ -43,15 +43,15 @@ PrimitiveSet LayerMixture::primitives(std::size_t layer, PrimitiveSet of_layer) 
 
 const LayerMixture& LayerMixtureCache::find(const std::vector<int>& key) {
   const auto found = std::ranges::find_if(
-      bundles_,
-      [&](const std::unique_ptr<const LayerMixture>& bundle) { return bundle->key() == key; });
-  if (found != bundles_.end()) {
+      mixtures_,
+      [&](const std::unique_ptr<const LayerMixture>& mixture) { return mixture->key() == key; });
+  if (found != mixtures_.end()) {
     // Rays see the same few again and again.
-    std::iter_swap(bundles_.begin(), found);
-    return *bundles_.front();
+    std::iter_swap(mixtures_.begin(), found);
+    return *mixtures_.front();
   }
-  bundles_.push_back(std::make_unique<const LayerMixture>(sources_, key));
-  return *bundles_.back();
+  mixtures_.push_back(std::make_unique<const LayerMixture>(sources_, key));
+  return *mixtures_.back();
 }
 
 }  // namespace pellucid

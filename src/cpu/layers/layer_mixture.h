@@ -27,7 +27,7 @@ class LayerMixture {
   bool fits() const noexcept { return fits_; }
   /// Returns the first channel of a layer that is present.
   int first_channel(std::size_t layer) const noexcept { return first_channel_[layer]; }
-  /// Returns the bundle's set of the primitives that a layer's set has.
+  /// Returns the mixture's set of the primitives that a layer's set has.
   PrimitiveSet primitives(std::size_t layer, PrimitiveSet of_layer) const noexcept;
 
  private:
@@ -44,17 +44,17 @@ class LayerMixture {
   bool fits_ = true;
 };
 
-/// The bundles that rays have met so far. Used by one thread.
+/// The mixtures that rays have met so far. Used by one thread.
 class LayerMixtureCache {
  public:
   explicit LayerMixtureCache(const std::vector<const LayerSource*>& sources) : sources_(sources) {}
 
-  /// Returns the bundle of a key, valid while this object lives.
+  /// Returns the mixture of a key, valid while this object lives.
   const LayerMixture& find(const std::vector<int>& key);
 
  private:
   const std::vector<const LayerSource*>& sources_;
-  std::vector<std::unique_ptr<const LayerMixture>> bundles_;
+  std::vector<std::unique_ptr<const LayerMixture>> mixtures_;
 };
 
 }  // namespace pellucid

@@ -19,7 +19,7 @@ class MediumParts {
   /// Both must outlive the object.
   MediumParts(const std::vector<const LayerSource*>& sources,
               const std::vector<LightSource<double>>& lights)
-      : sources_(sources), parts_(lights), bundles_(sources) {}
+      : sources_(sources), parts_(lights), mixtures_(sources) {}
 
   /// `key`: LayerMerge::key(); `stretches`: of each layer that is present, the one that holds the
   /// part. Returns false if there are more channels or Gaussians than the integrator takes: nobody
@@ -38,8 +38,8 @@ class MediumParts {
 
   const std::vector<const LayerSource*>& sources_;
   LitParts parts_;
-  LayerMixtureCache bundles_;
-  const LayerMixture* bundle_ = nullptr;  ///< of the last part without light
+  LayerMixtureCache mixtures_;
+  const LayerMixture* mixture_ = nullptr;  ///< of the last part without light
   LayerMixture::Span span_;
 };
 

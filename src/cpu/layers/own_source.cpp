@@ -180,7 +180,7 @@ class Promises {
   long told_ = 0;
 };
 
-/// BlockIntervals of one's own, cut to ranges.
+/// Stretches of a field of one's own, cut to ranges.
 class OwnStream : public LayerStream {
  public:
   OwnStream(const OwnSource& source, std::unique_ptr<StretchStream> stream)

@@ -48,7 +48,7 @@ class ChordFit {
         format_(std::move(format)),
         largest_color_(largest_color),
         largest_opacity_(largest_opacity),
-        most_points_(max_points) {}
+        max_points_(max_points) {}
 
   std::vector<OpacityPoint> points() {
     // Beyond the ends the function is constant, and may begin or end with a jump.
@@ -141,17 +141,17 @@ class ChordFit {
   }
 
   void check_size(std::size_t size) const {
-    if (size <= most_points_) return;
+    if (size <= max_points_) return;
     throw Error(format_ + ": to stay within a deviation of " +
                 text_of(std::min(color_limit_, depth_limit_)) + " it takes more than " +
-                std::to_string(most_points_) + " points; allow a larger deviation");
+                std::to_string(max_points_) + " points; allow a larger deviation");
   }
 
   const Curves& curves_;
   double color_limit_, depth_limit_;
   std::string format_;
   double largest_color_, largest_opacity_;
-  std::size_t most_points_;
+  std::size_t max_points_;
   double color_deviation_ = 0, depth_deviation_ = 0;
   std::vector<OpacityPoint> points_;
 };

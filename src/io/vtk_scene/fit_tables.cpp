@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fit_tables.h"
 
-#include <algorithm>
 #include <memory>
 
 #include "pellucid/io/scene_json.h"
 
 namespace pellucid::vtk_scene {
-
-bool operator==(const FunctionNumbers& a, const FunctionNumbers& b) {
-  const auto same = [](const TransferFunction::Point& p, const TransferFunction::Point& q) {
-    return p.value == q.value && p.extinction == q.extinction && p.color == q.color;
-  };
-  return a.relative_error == b.relative_error && a.color_error == b.color_error &&
-         std::ranges::equal(a.points, b.points, same);
-}
 
 void fit_tables(const std::vector<std::optional<OpacityTable>>& tables, Scene& scene,
                 KeptFits& kept) {

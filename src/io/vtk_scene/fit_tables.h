@@ -15,7 +15,7 @@ struct FunctionNumbers {
   std::vector<TransferFunction::Point> points;
   double relative_error = 0, color_error = 0;
 
-  friend bool operator==(const FunctionNumbers& a, const FunctionNumbers& b);
+  bool operator==(const FunctionNumbers&) const = default;
 };
 using KeptFits = Kept<FunctionNumbers, TransferFunction>;
 

@@ -17,7 +17,7 @@ namespace pellucid::vtk_scene {
 namespace {
 
 /// Largest number of components that VTK shows.
-constexpr int most_components = 4;
+constexpr int max_components = 4;
 
 /// One volume on its way to layers.
 class GridTranslator {
@@ -95,7 +95,7 @@ std::vector<TableLayer> GridTranslator::layers() {
     if (!own) return {};
     own_clips_ = *own;
   }
-  if (components > most_components) {
+  if (components > max_components) {
     throw Error("the array has " + std::to_string(components) +
                 " components; VTK shows up to 4, extract some");
   }
