@@ -16,7 +16,7 @@
 #include "pellucid/traverse/block_walk.h"
 #include "pellucid/traverse/build_block_records.h"
 
-// BlockSegments along rays through 256³ cells, the records of the blocks of a volume, and their
+// Walks along rays through 256³ cells, the records of the blocks of a volume, and their
 // classes under a transfer function. One item is one cell, one block or one voxel.
 namespace pellucid::bench {
 namespace {

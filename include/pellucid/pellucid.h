@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What a first picture takes: data from files, scenes, renderers, and pictures into files. Of the
+/// Headers for a first picture: data from files, scenes, renderers, and pictures into files. Of the
 /// components `cpu` and `io`.
 
 #include "pellucid/cpu/render.h"

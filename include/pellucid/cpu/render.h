@@ -50,7 +50,7 @@ struct TileResult {
 /// Upper limit of FrameMonitor::preview.
 inline constexpr int largest_preview = 8;
 
-/// What is computed of each pixel beside its color.
+/// Outputs of a frame beside the color of each pixel.
 struct FrameOutputs {
   bool depth = false;  ///< fill Image::depth; projections have none
   bool error = false;  ///< fill Image::error and Image::proved
@@ -79,7 +79,7 @@ struct Machine {
   std::optional<GaussianMarch> gaussian_march{};
 };
 
-/// How a frame tells what it has done, and how it is cancelled.
+/// Progress of a frame: whom it tells, and by what it is cancelled.
 struct FrameMonitor {
   /// Called occasionally with the finished fraction in [0, 1], by one thread at a time. If it
   /// returns false, the frame is cancelled and render() throws Cancelled.

@@ -30,7 +30,7 @@ struct GaussianPrimitive {
                                             ///< rank
   double extinction = 0;  ///< the peak, 1/length in world units, >= 0
   Rgb<double> color{};    ///< linear RGB of the particles, not premultiplied, >= 0
-  /// What a file has in place of the matrix; make_multivariate() makes the matrix of it.
+  /// Shape as a file gives it, in place of the matrix; make_multivariate() makes the matrix of it.
   std::optional<GaussianShape> shape{};
 };
 

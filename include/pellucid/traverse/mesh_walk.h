@@ -5,7 +5,7 @@
 
 namespace pellucid {
 
-/// BlockSegments along a ray from tetrahedron to neighbouring tetrahedron, one or one in each lane.
+/// Walks along a ray from tetrahedron to neighbouring tetrahedron, one or one in each lane.
 ///
 /// Seen along the ray a tetrahedron is four triangles, of which the ray is in none or in two. Given
 /// the one by which it comes, three signs tell the other: those of the areas between the ray and

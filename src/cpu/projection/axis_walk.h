@@ -58,7 +58,7 @@ class WalkPlanes {
   double per_length_[3];
 };
 
-/// BlockSegments through cells, or through blocks as if they were cells. Its intervals tile the
+/// Walks through cells, or through blocks as if they were cells. Its intervals tile the
 /// range, like those of StructuredWalk; but positions of planes are off by a few roundings, so that
 /// a cell may begin beside its plane by that much. Projections account for it. No division on the
 /// way.

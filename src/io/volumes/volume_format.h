@@ -13,7 +13,7 @@ namespace pellucid {
 
 struct DamagedDicomFile;
 
-/// What the content of a file says of a format of volumes.
+/// Answer of a format to the content of a file.
 enum class ContentOwner {
   others,  ///< nothing
   this_format,

@@ -5,7 +5,7 @@
 
 namespace pellucid {
 
-/// BlockIntervals of the rays of a packet, each inside of one block that is not to be skipped, in
+/// Intervals of the rays of a packet, each inside of one block that is not to be skipped, in
 /// arrays: what lies ahead of the rays, to be gone through by as many lanes as there are, whichever
 /// ray's they are. Those of a ray come in order.
 template <int N>
@@ -27,7 +27,7 @@ struct BlockIntervals {
   std::int32_t spans[capacity];  ///< that absorb
 };
 
-/// BlockIntervals that are to be gone through cell by cell, packed, in order.
+/// Intervals that are to be gone through cell by cell, packed, in order.
 template <int N>
 struct BlockSegments {
   static constexpr int capacity = BlockIntervals<N>::capacity;

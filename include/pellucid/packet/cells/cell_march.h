@@ -46,7 +46,7 @@ Batch<float, N> end_of_cells(Batch<float, N> cell, Batch<float, N> last, Batch<d
   return select(moves, select(forward, last, F(0)), cell);
 }
 
-/// BlockSegments in lanes, from cell to cell; a lane that is through takes the next walk there is,
+/// Walks in lanes, from cell to cell; a lane that is through takes the next walk there is,
 /// whichever ray's. Places are in double, so that planes are where all other means see them: beside
 /// vacuum nothing makes up for what one cell has too much. They count from the lower corner of the
 /// block and from where the ray enters it.

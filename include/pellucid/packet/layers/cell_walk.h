@@ -8,7 +8,7 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// BlockSegments N rays through the cells of a grid, each ray in a lane of its own. Places are in
+/// Walks N rays through the cells of a grid, each ray in a lane of its own. Places are in
 /// double, so that planes are where all other walks see them; they are those of the ray's own
 /// parameter, the world arc length.
 template <int N>

@@ -140,7 +140,8 @@ struct LaneLayer {
     return none;
   }
 
-  /// Takes the ways of parts that are one cell, of which the step may have a share.
+  /// Sets the cell, its entry and its exit in lanes whose part is one cell. A step that is a share
+  /// of the cell gets that share of the way through it.
   void take_cell(M in_cell, M cut, const LaneStep<N>& step, const F* part) noexcept {
     for (int a = 0; a < 3; ++a) {
       const F begin = part[Row::entry_in_cell + a], end = part[Row::exit_in_cell + a];

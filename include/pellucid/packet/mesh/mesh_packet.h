@@ -17,9 +17,9 @@ namespace pellucid {
 ///
 /// The rays go ahead some steps at a time (MeshMarch); then each lane takes the spans of its ray
 /// that absorb, piece by piece: cut where the extinction has a breakpoint, each is Moreland's
-/// integral of linear extinction and color. Where the color has breakpoints of its own, its line
-/// between the ends stands for it as far as the budget pays for that. What binary32 is not good
-/// enough for is handed back.
+/// integral of linear extinction and color. Where the color has breakpoints of its own, a
+/// straight line between the ends replaces it where the budget allows that error. Spans that
+/// binary32 cannot resolve are left to another integrator.
 ///
 /// S: the numbers that the rays see the mesh in. With float a ray that is beyond its tolerance is
 /// to be followed again in double.

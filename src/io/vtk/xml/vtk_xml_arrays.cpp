@@ -75,7 +75,7 @@ std::uint64_t count_of(const XmlTag& tag, const char* name) {
               ", which is no whole number from 0 on; mend the file");
 }
 
-/// BlockSegments through the tags of a file.
+/// Walks through the tags of a file.
 class FileReader {
  public:
   explicit FileReader(std::string_view text)
