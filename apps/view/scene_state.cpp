@@ -124,7 +124,7 @@ void SceneState::set_size(ImageSize size) {
 }
 
 void SceneState::set_tolerance(double tolerance) {
-  scene_.integration.set_tolerance(tolerance);
+  scene_.integration.tolerance = nearest_tolerance(tolerance);
   description_.integration.tolerance = scene_.integration.tolerance;
   fit_opacity_tables(description_, scene_);
 }

@@ -115,7 +115,7 @@ Scene shape_of(const Scene& scene) {
     layer.projection = LayerProjection::maximum;
     layer.gradient_opacity = nullptr;
   }
-  shape.integration.set_tolerance(largest_tolerance);
+  shape.integration.tolerance = largest_tolerance;
   return shape;
 }
 
@@ -158,7 +158,7 @@ void update_inputs(vtkAlgorithm& mapper) {
 
 bool set_tolerance(Settings& settings, double tolerance) {
   if (!(tolerance > 0)) return false;
-  const double within = std::clamp(tolerance, smallest_tolerance, largest_tolerance);
+  const double within = nearest_tolerance(tolerance);
   return std::exchange(settings.tolerance, within) != within;
 }
 
@@ -216,7 +216,7 @@ Scene MapperCore::scene_with(std::vector<TableLayer> layers, double tolerance,
   const bool is_lit = std::ranges::any_of(
       scene.layers, [](const Layer& layer) { return layer.shading.has_value(); });
   scene.lights = lights_of(renderer, is_lit, notes);
-  scene.integration.set_tolerance(tolerance);
+  scene.integration.tolerance = nearest_tolerance(tolerance);
   scene.integration.grade = settings.grade;
   if (const double* const bounds = volume.GetBounds()) {
     std::array<double, 6> box;

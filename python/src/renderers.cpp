@@ -193,7 +193,7 @@ ImageHandle render_share(RendererHandle& handle, const py::object& object, doubl
         const double range = cli::estimate_range(made.scene, options.machine, options.monitor);
         estimates = false;
         cli::RelativePicture picture = cli::render_relative(share, range, [&](double tolerance) {
-          made.scene.integration.set_tolerance(tolerance);
+          made.scene.integration.tolerance = nearest_tolerance(tolerance);
           fit_opacity_tables(made.description, made.scene);
           return handle.renderer->render(made.scene, options);
         });

@@ -100,13 +100,13 @@ std::optional<Method> method_from_name(std::string_view name) noexcept {
   return value_of<Method>(method_names, name);
 }
 
-double Integration::set_tolerance(double wanted) {
+double nearest_tolerance(double wanted) {
   if (!(wanted > 0)) {
     throw Error("integration: tolerance is " + number(wanted) +
                 ", but must be a positive number; " + number(default_tolerance) +
                 " is half a step of 8 bits");
   }
-  return tolerance = std::clamp(wanted, smallest_tolerance, largest_tolerance);
+  return std::clamp(wanted, smallest_tolerance, largest_tolerance);
 }
 
 void check_data(const Scene& scene) {

@@ -31,7 +31,7 @@ TEST(OverTolerance, OnlyWherePixelsAreOver) {
 
 TEST(OverTolerance, SaysHowManyHowMuchAndWhatToDo) {
   Integration integration;
-  integration.set_tolerance(1e-5);
+  integration.tolerance = 1e-5;
   const std::string text = *over_tolerance(report_of(12, 3.41e-5), integration);
   for (const char* part : {"12 of 4096 pixels", "1e-05", "3.41e-05", "--tolerance 3.5e-05"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;

@@ -67,7 +67,7 @@ double distance_to_ball(const Ray<double>& ray, const Vec3<double>& center, doub
 
 /// The scene with a ball that no depth buffer has seen: its depths are those of a true ball.
 Image truth_with_ball(Scene scene, const Vec3<double>& center, double radius) {
-  scene.integration.set_tolerance(1e-5);
+  scene.integration.tolerance = 1e-5;
   auto geometry = std::make_shared<Image>();
   geometry->width = scene.size.width;
   geometry->height = scene.size.height;
@@ -220,7 +220,7 @@ TEST(VtkGeometry, ARendererFillsItsHalfOfTheWindow) {
   Scene scene = mapper->GetCore().scene_of(*mapper, {}, *stage.renderer, *volume);
   ASSERT_EQ(scene.size.width, 60);
   ASSERT_EQ(scene.size.height, 48);
-  scene.integration.set_tolerance(1e-5);
+  scene.integration.tolerance = 1e-5;
   const Image part = render(scene).image;
   Image truth;
   truth.width = 120;
@@ -243,10 +243,10 @@ TEST(VtkGeometry, VolumesAreDrawnOneOverTheOther) {
   stage.look();
   const Image shown = stage.picture();
   Scene scene = first->GetCore().scene_of(*first, {}, *stage.renderer, *one);
-  scene.integration.set_tolerance(1e-5);
+  scene.integration.tolerance = 1e-5;
   const Image below = render(scene).image;
   scene = second->GetCore().scene_of(*second, {}, *stage.renderer, *two);
-  scene.integration.set_tolerance(1e-5);
+  scene.integration.tolerance = 1e-5;
   Image truth = render(scene).image;
   for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
     const float clear = 1 - truth.pixels[i][3];
@@ -287,7 +287,7 @@ TEST(VtkGeometry, TheVolumesOfAMultiVolumeMix) {
     scene = made;
     scene.layers = layers;
   }
-  scene.integration.set_tolerance(2e-4);
+  scene.integration.tolerance = 2e-4;
   EXPECT_LE(largest_difference(shown, render(scene).image),
             half_a_step + default_tolerance + rounding + 2 * default_tolerance / 8 + 2e-4);
 }

@@ -61,7 +61,7 @@ Scene scene_on(Stage& stage, std::vector<Layer> layers) {
   scene.camera.focal_point = vector(stage.camera->GetFocalPoint());
   scene.camera.up = vector(stage.camera->GetViewUp());
   scene.camera.vertical_angle = stage.camera->GetViewAngle();
-  scene.integration.set_tolerance(1e-5);
+  scene.integration.tolerance = 1e-5;
   return scene;
 }
 

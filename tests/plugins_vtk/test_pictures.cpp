@@ -17,7 +17,7 @@ constexpr double rounding = 1.0 / 32767;
 
 Image truth_of(Stage& stage, vtkPellucidVolumeMapper* mapper, vtkVolume* volume) {
   Scene scene = mapper->GetCore().scene_of(*mapper, {}, *stage.renderer, *volume);
-  scene.integration.set_tolerance(1e-5);
+  scene.integration.tolerance = 1e-5;
   return render(scene).image;
 }
 

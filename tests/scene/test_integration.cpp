@@ -13,9 +13,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-TEST(Tolerance, TheSetterTakesTheNearestAndReturnsIt) {
-  Integration integration;
-  EXPECT_EQ(integration.tolerance, 1.0 / 512);
+TEST(Tolerance, TheNearestWithinTheLimits) {
+  EXPECT_EQ(Integration{}.tolerance, 1.0 / 512);
   const struct {
     double wanted, used;
   } cases[] = {{1e-3, 1e-3},
@@ -28,18 +27,14 @@ TEST(Tolerance, TheSetterTakesTheNearestAndReturnsIt) {
                {1e300, largest_tolerance},
                {infinity, largest_tolerance}};
   for (const auto& [wanted, used] : cases) {
-    EXPECT_EQ(integration.set_tolerance(wanted), used) << wanted;
-    EXPECT_EQ(integration.tolerance, used) << wanted;
+    EXPECT_EQ(nearest_tolerance(wanted), used) << wanted;
   }
 }
 
-TEST(Tolerance, TheSetterRefusesWhatIsNotPositiveAndKeepsWhatWas) {
-  Integration integration;
-  integration.set_tolerance(0.25);
+TEST(Tolerance, NoneIsNearestToWhatIsNotPositive) {
   for (const double bad : {0.0, -0.0, -1e-3, -infinity, nan}) {
-    expect_error([&] { integration.set_tolerance(bad); },
+    expect_error([&] { nearest_tolerance(bad); },
                  {"integration: tolerance is", "positive", "0.001953125"});
-    EXPECT_EQ(integration.tolerance, 0.25);
   }
 }
 

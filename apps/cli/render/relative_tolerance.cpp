@@ -68,7 +68,7 @@ double estimate_range(const Scene& scene, const Machine& machine, const FrameMon
     const double largest = largest_channel(render(small, plain).image);
     const double tolerance = small.integration.tolerance;
     if (largest >= sharper * tolerance || tolerance <= smallest_tolerance) return largest;
-    small.integration.set_tolerance(std::max(tolerance * next, smallest_tolerance));
+    small.integration.tolerance = nearest_tolerance(tolerance * next);
   }
 }
 

@@ -434,7 +434,7 @@ void set_scene_tolerance(PreparedScene& prepared, double tolerance) {
   SceneDescription& description = prepared.description;
   Scene& scene = prepared.scene;
   prepared.tolerance_asked = tolerance;
-  scene.integration.set_tolerance(tolerance);
+  scene.integration.tolerance = nearest_tolerance(tolerance);
   // With the tolerance that was used, a saved scene gives this picture.
   description.integration.tolerance = scene.integration.tolerance;
   description.integration.relative_tolerance.reset();
@@ -463,7 +463,7 @@ SceneRequest request_scene(const RenderArguments& arguments) {
       prepared.tolerance_asked = tolerance.value;
     }
   }
-  integration.set_tolerance(prepared.tolerance_asked);
+  integration.tolerance = nearest_tolerance(prepared.tolerance_asked);
   // The files of a scene are known only now.
   refuse_overwriting(output_files(arguments), data_files(description));
   prepared.transfer_function_from = !arguments.transfer_function.empty()

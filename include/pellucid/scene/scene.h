@@ -103,10 +103,11 @@ struct Integration {
   std::optional<double> relative_tolerance{};
 
   bool operator==(const Integration&) const = default;
-  /// Sets the tolerance to `wanted`, clamped to the limits, and returns it. Throws Error if
-  /// `wanted` is not a positive number.
-  double set_tolerance(double wanted);
 };
+/// Returns the tolerance within the limits that is nearest to `wanted`. Throws Error if `wanted` is
+/// not a positive number. Programs in which a person asks for a tolerance use it, and say where it
+/// differs; nothing else changes a tolerance that is out of range, but refuses it.
+double nearest_tolerance(double wanted);
 
 /// Picture to render: data, camera and accuracy. Where layers overlap, their extinctions add, and
 /// so do extinction · color: a mixture of particles (Max 1995). The order of the layers does not

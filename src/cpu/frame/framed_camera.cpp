@@ -142,7 +142,7 @@ Scene draft_scene(const Scene& scene) {
   draft.background.reset();
   draft.backdrop.reset();
   draft.integration = Integration{};
-  draft.integration.set_tolerance(draft_tolerance);
+  draft.integration.tolerance = draft_tolerance;
   for (Layer& layer : draft.layers) layer.shading.reset();
   return draft;
 }

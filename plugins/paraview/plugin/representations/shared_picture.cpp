@@ -96,7 +96,7 @@ int SharedPicture::ranks() {
 
 bool SharedPicture::set_tolerance(double tolerance) {
   if (!(tolerance > 0)) return false;
-  tolerance_ = std::clamp(tolerance, smallest_tolerance, largest_tolerance);
+  tolerance_ = nearest_tolerance(tolerance);
   return plugin::set_tolerance(core_.settings, share());
 }
 
