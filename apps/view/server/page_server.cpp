@@ -51,6 +51,33 @@ void PageServer::State::accept() {
   });
 }
 
+void PageServer::State::send(Outgoing message) {
+  bool is_first = false;
+  {
+    const std::lock_guard lock(outbox_mutex);
+    is_first = outbox.empty();
+    outbox.push_back(std::move(message));
+  }
+  if (is_first) net::post(context, [self = shared_from_this()] { self->deliver(); });
+}
+
+void PageServer::State::deliver() {
+  std::deque<Outgoing> messages;
+  {
+    const std::lock_guard lock(outbox_mutex);
+    messages.swap(outbox);
+  }
+  for (const auto& [page, message] : messages) {
+    // A socket that closes leaves the list.
+    std::vector<std::shared_ptr<PageSocket>> sockets;
+    for (const auto& [id, socket] : pages) {
+      if (page == id) socket->is_greeted = true;
+      if (page == id || (!page && socket->is_greeted)) sockets.push_back(socket);
+    }
+    for (const auto& socket : sockets) socket->send(message);
+  }
+}
+
 PageServer::PageServer(std::uint16_t port, PageEvents events, ServerLimits limits,
                        const std::string& frame_ancestors)
     : parts_(std::make_unique<Parts>()) {
@@ -97,19 +124,11 @@ void PageServer::run(const std::function<bool()>& ended) {
 }
 
 void PageServer::send(PageId page, PageMessage message) {
-  net::post(parts_->context, [state = parts_->state, page, message = std::move(message)] {
-    const auto found = state->pages.find(page);
-    if (found != state->pages.end()) found->second->send(message);
-  });
+  parts_->state->send({page, std::move(message)});
 }
 
 void PageServer::send_to_all(PageMessage message) {
-  net::post(parts_->context, [state = parts_->state, message = std::move(message)] {
-    // A socket that closes leaves the list.
-    std::vector<std::shared_ptr<PageSocket>> sockets;
-    for (const auto& [page, socket] : state->pages) sockets.push_back(socket);
-    for (const auto& socket : sockets) socket->send(message);
-  });
+  parts_->state->send({{}, std::move(message)});
 }
 
 }  // namespace pellucid::view

@@ -63,9 +63,10 @@ class PageServer {
   /// Serves until `ended`, which is asked ten times a second, is true.
   void run(const std::function<bool()>& ended);
 
-  // Safe to call from any thread:
+  // Safe to call from any thread. Messages arrive in the order of the calls:
 
   void send(PageId page, PageMessage message);
+  /// Sends it to the pages that have had a message of their own.
   void send_to_all(PageMessage message);
 
   struct State;  ///< server_state.h

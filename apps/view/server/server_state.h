@@ -11,9 +11,12 @@
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
 
 #include "access_control.h"
 #include "page_server.h"
@@ -36,10 +39,19 @@ class PageSocket {
   virtual ~PageSocket() = default;
   virtual void send(PageMessage message) = 0;
   virtual void close() = 0;
+
+  /// Whether it has had a message of its own, before which it gets none that goes to all.
+  bool is_greeted = false;
 };
 
-/// State that the connections of a server share. All of it belongs to the thread that runs
-/// `context`.
+/// A message on its way to one page, or to all if none is given.
+struct Outgoing {
+  std::optional<PageId> page;
+  PageMessage message;
+};
+
+/// State that the connections of a server share. All of it but the outbox belongs to the thread
+/// that runs `context`.
 struct PageServer::State : std::enable_shared_from_this<PageServer::State> {
   State(net::io_context& on, PageEvents of_pages, ServerLimits to_keep)
       : context(on), events(std::move(of_pages)), limits(to_keep), acceptor(on), timer(on) {}
@@ -55,8 +67,17 @@ struct PageServer::State : std::enable_shared_from_this<PageServer::State> {
   std::size_t connections = 0;  ///< of any kind
   PageId next_page = 1;
   std::map<PageId, std::shared_ptr<PageSocket>> pages;
+  std::mutex outbox_mutex;  ///< of the following
+  /// Messages in the order in which they were sent. What the context's own thread posts to it is
+  /// carried out behind what other threads post later, so that posting messages may exchange them.
+  std::deque<Outgoing> outbox;
 
   void accept();
+  /// Queues a message; safe to call from any thread.
+  void send(Outgoing message);
+
+ private:
+  void deliver();
 };
 
 /// Handlers that wait in the context own the state, so that the context is the last to go.
