@@ -37,7 +37,9 @@ class FieldReader {
     const py::object from = object_.attr(key.name);
     const std::string what = prefix_ + key.name;
     if constexpr (std::is_same_v<Kind, scene_fields::Number>) {
-      if (std::is_same_v<Member, double> || !from.is_none()) member = number_of(from, what);
+      if (std::is_same_v<Member, double> || !from.is_none()) {
+        member = number_in(kind, from, what);
+      }
     } else if constexpr (std::is_same_v<Kind, scene_fields::Vector>) {
       member = vector_of(from, what);
     } else if constexpr (std::is_same_v<Kind, scene_fields::Color>) {
@@ -52,6 +54,13 @@ class FieldReader {
   }
 
  private:
+  static double number_in(const scene_fields::Number& kind, const py::object& from,
+                          const std::string& what) {
+    const double number = number_of(from, what);
+    if (kind.has(number)) return number;
+    throw Error(what + ": expected a number " + kind.range() + ", got " + short_repr(from));
+  }
+
   py::handle object_;
   std::string prefix_;
 };

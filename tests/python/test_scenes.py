@@ -307,6 +307,26 @@ def test_what_is_refused_is_refused_in_one_line(change, words):
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize("part, key, number", [
+    ("camera", "vertical_angle", 500), ("camera", "vertical_angle", float("nan")),
+    ("camera", "parallel_scale", -1), ("integration", "tolerance", 2),
+    ("integration", "step", 0), ("shading", "ambient", -1), ("shading", "power", 0.5),
+    ("isosurface", "opacity", 1.5), ("slice", "opacity", -0.5),
+])
+def test_no_scene_is_saved_with_numbers_that_a_file_refuses(tmp_path, part, key, number):
+    scene = pellucid.scene_of(smooth(), POINTS, size=SIZE, shading=pellucid.Shading(),
+                              isosurfaces=[pellucid.Isosurface(0.5)],
+                              slices=[pellucid.Slice()])
+    layer = scene.layers[0]
+    parts = {"camera": scene.camera, "integration": scene.integration, "shading": layer.shading,
+             "isosurface": layer.isosurfaces[0], "slice": layer.slices[0]}
+    setattr(parts[part], key, number)
+    path = tmp_path / "scene.json"
+    with pytest.raises(pellucid.Error, match=f"{key}: expected a number .*, got {number}"):
+        scene.save(path)
+    assert not path.exists()
+
+
 @pytest.mark.parametrize("call, words", [
     (lambda: pellucid.TransferFunction([]), "no"),
     (lambda: pellucid.TransferFunction("viridis"), "points: expected a list"),

@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -39,6 +40,19 @@ struct Number {
   const char* noun;
   double least = -scene_json::largest_number, most = scene_json::largest_number;
   Ends ends = Ends::closed;
+
+  bool has(double value) const {
+    return ends == Ends::open          ? value > least && value < most
+           : ends == Ends::above_least ? value > 0 && value <= most
+                                       : value >= least && value <= most;
+  }
+  /// Returns the range as messages have it: "from 0 to 1".
+  std::string range() const {
+    const std::string lower = scene_json::number_text(least), upper = scene_json::number_text(most);
+    return ends == Ends::open          ? "above " + lower + " and below " + upper
+           : ends == Ends::above_least ? "above 0 and at most " + upper
+                                       : "from " + lower + " to " + upper;
+  }
 };
 /// Kind of a point, or of a direction: of any length but 0.
 struct Vector {

@@ -16,12 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string number_text(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.15g", number);
-  return text;
-}
-
 /// Returns a token of a JSON pointer (RFC 6901), fit for a message.
 std::string pointer_token(std::string_view key) {
   std::string escaped;
@@ -142,6 +136,12 @@ std::string list(const std::vector<std::string_view>& words) {
 }
 
 }  // namespace
+
+std::string number_text(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.15g", number);
+  return text;
+}
 
 json parse_document(std::string_view text, const std::string& name, std::size_t deepest) {
   Builder builder(text, name, deepest);

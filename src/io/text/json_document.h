@@ -17,6 +17,9 @@ constexpr double largest_number = 1e30;
 /// Data values, and what is compared with them, lie in ±largest_value: what a Volume takes.
 constexpr double largest_value = 2.1e37;
 
+/// Returns a number as messages have it.
+std::string number_text(double number);
+
 /// Levels of nesting that a scene may have.
 constexpr std::size_t deepest_scene = 16;
 
