@@ -181,7 +181,7 @@ Command add_convert(CommandLine& app) {
   const auto arguments = std::make_shared<ConvertArguments>();
   command
       .add_option("INPUT", arguments->input,
-                  fmt::format("{}, builtin:NAME[:POINTS], or mesh file ({})", input_help,
+                  fmt::format("{}, builtin:NAME[:POINTS], or mesh file ({})", input_help(),
                               mesh_extensions()))
       ->required();
   command

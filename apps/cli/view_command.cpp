@@ -132,7 +132,7 @@ Command add_view(CommandLine& app) {
   arguments->scene.suggests_functions = true;
   command.add_option(
       "INPUT", arguments->scene.input,
-      std::string(input_help) + ", " + mesh_input_help() +
+      input_help() + ", " + mesh_input_help() +
           ", SCENE.json or builtin:NAME[:POINTS]. Without it the page asks for a file");
   command
       .add_option("--port", arguments->port,

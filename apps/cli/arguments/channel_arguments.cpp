@@ -84,8 +84,7 @@ std::vector<ChannelSource> needed(const std::vector<ChannelSource>& sources,
 void ChannelArguments::add_to(CommandLine& app) {
   command = app.get_name();
   app.add_option("FILE", inputs,
-                 std::string(input_help) +
-                     " or builtin:NAME[:POINTS]; several files are channels on one grid")
+                 input_help() + " or builtin:NAME[:POINTS]; several files are channels on one grid")
       ->option_text("...");
   app.add_option("--channel", channels,
                  "Add a channel; may be repeated. SOURCE is a file, FILE[C], builtin:NAME, "

@@ -10,6 +10,7 @@
 #include "output.h"
 #include "parse.h"
 #include "pellucid/io/mesh_source.h"
+#include "pellucid/io/read_volume.h"
 
 namespace pellucid::cli {
 
@@ -18,6 +19,14 @@ namespace {
 constexpr const char* group = "Options of volume files";
 
 }  // namespace
+
+std::string input_help() {
+  return fmt::format(
+      "Volume file ({}), store of Zarr or OME-Zarr (its folder), data set of vtk.js (its folder or "
+      "index.json), DICOM series (its folder or one of its files), stack of images (one of them, "
+      "NAME%03d.tif, its folder)",
+      volume_extensions());
+}
 
 void VolumeOptions::add_to(CommandLine& command, bool with_array, bool with_axes) {
   const auto add = [&](Option* option) { given.push_back(option->group(group)); };

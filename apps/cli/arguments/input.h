@@ -12,14 +12,7 @@
 namespace pellucid::cli {
 
 /// Kinds of INPUT, for help texts.
-inline constexpr const char* input_help =
-    "Volume file (.nii, .nii.gz, .hdr, .img, .mgz, .mgh, .nrrd, .nhdr, .mha, .mhd, .npy, .npz, "
-    ".vti, .pvti, .pvtr, .vtk, .slc, .h5, .hdf5, .he5, .nc, .nc4, .cdf, .vdb, .mrc, .map, .rec, "
-    ".st, .ccp4, .ivf, .vvd, .raw), store of Zarr or OME-Zarr (its folder, .zarr), data set of "
-    "vtk.js (its "
-    "folder or index.json), "
-    "DICOM series (its folder or one of its files), stack of images (a .tif, .tiff or .png of it, "
-    "NAME%03d.tif, its folder)";
+std::string input_help();
 
 /// The options that say, or replace, what a volume file says about itself.
 struct VolumeOptions {

@@ -318,7 +318,7 @@ Command add_info(CommandLine& app) {
   const auto arguments = std::make_shared<InfoArguments>();
   command
       .add_option("INPUT", arguments->input,
-                  std::string(input_help) + ", " + mesh_input_help() + " or builtin:NAME[:POINTS]")
+                  input_help() + ", " + mesh_input_help() + " or builtin:NAME[:POINTS]")
       ->required();
   command.add_flag("--json", arguments->json,
                    "Print the same as JSON, with a histogram of 256 bins");

@@ -257,7 +257,7 @@ Command add_render(CommandLine& app) {
       *app.add_subcommand("render", "Render a volume, a mesh or a scene to an image");
   const auto arguments = std::make_shared<RenderArguments>();
   command.add_option("INPUT", arguments->input,
-                     std::string(input_help) + ", " + mesh_input_help() +
+                     input_help() + ", " + mesh_input_help() +
                          ", SCENE.json or builtin:NAME[:POINTS]; optional with --channel");
   add_render_options(command, *arguments);
   command.footer(
