@@ -99,8 +99,8 @@ std::unique_ptr<const RayTracer> make_surface_tracer(const TracerTask& task);
 /// Returns the tracer of channels with a multivariate transfer function. Null if packets do not
 /// suit the rays.
 std::unique_ptr<const RayTracer> make_multivariate_tracer(const TracerTask& task);
-/// Returns the tracer of a mesh with either function. Null for a function of several variables
-/// where packets do not suit the rays.
+/// Returns the tracer of a mesh with a function of one variable or of several. Null for several if
+/// no kernel of packets serves this tolerance, machine and mixture of Gaussians.
 std::unique_ptr<const RayTracer> make_mesh_tracer(const TracerTask& task);
 /// Returns the tracer of whole rays by one of the methods for comparison, without depths. Null
 /// where packets do not suit the layer or the method: it is sampled ray by ray.

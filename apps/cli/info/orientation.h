@@ -11,11 +11,12 @@ namespace pellucid::cli {
 /// posterior, z towards superior).
 struct Orientation {
   std::string code;       ///< where each index grows to, e.g. "LPS", "RAS", "PIR"
-  double oblique_by = 0;  ///< degrees: largest angle between an axis and the direction named
+  double oblique_by = 0;  ///< degrees: largest angle between an axis and its direction
 };
 
-/// Each axis is named by the world direction it is nearest to, the nearest pair first, no world
-/// axis twice. The columns need not have length 1 but are not zero.
+/// Returns the letters and the tilt of the index axes, of which column i is axis i in the world, of
+/// any length but 0. Each is named by the world direction that it is nearest to, the nearest pair
+/// first, no world axis twice.
 Orientation anatomical_orientation(const Mat3<double>& direction);
 
 }  // namespace pellucid::cli

@@ -22,8 +22,9 @@ class Uploads {
   std::uint64_t most_bytes() const noexcept { return most_bytes_; }
 
   /// Returns where a file of so many bytes is to be written, which does not exist yet; makes its
-  /// folder. A new set takes the place of those that were not opened. Throws Error if the name is
-  /// no plain relative path, or the files are too large or too many.
+  /// folder. A new set takes the place of all but the one that is kept. Throws Error if the name
+  /// is no plain relative path or has been used, if the files are larger than `most_bytes` or too
+  /// many, or if the disk has no room for them.
   std::filesystem::path place(int set, std::string_view name, std::uint64_t bytes);
   /// Returns where a file of a set is, or its folder if the name is empty. Throws Error.
   std::filesystem::path find(int set, std::string_view name) const;

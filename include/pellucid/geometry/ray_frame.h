@@ -62,9 +62,9 @@ PELLUCID_HD inline RayFrame<double> make_ray_frame(const Ray<double>& ray, const
 /// of ray, a and b, and its sign.
 ///
 /// If the ray meets the line, it is treated as displaced by ε along x and ε² along y, with
-/// infinitesimal ε (H. Edelsbrunner, E. Mücke: Simulation of Simplicity, 1990). It therefore never
-/// meets an edge or a point, and every computation gets the same answer. The answer from b to a is
-/// the opposite one; only if a and b coincide there is none.
+/// infinitesimal ε (H. Edelsbrunner, E. Mücke: Simulation of Simplicity, 1990). A ray therefore
+/// never meets an edge or a point, and every computation gets the same answer. The answer from b to
+/// a is the opposite one; if a and b coincide, `left` is false.
 template <class T>
 struct Side {
   T area{};

@@ -144,8 +144,8 @@ std::vector<std::string> function_channels(const LayerDescription& layer);
 /// Returns the names that a term of the layer's function may refer to; for a field all three.
 std::vector<std::string> known_channels(const LayerDescription& layer);
 
-/// Gives the channels of the layer's light and surfaces their names, but the first one, which needs
-/// none. Throws Error for an index that is not there.
+/// Names every channel that the layer's shading, gradient opacity, isosurfaces and slices give by
+/// an index, but the first one, which needs no name. Throws Error for an index that is not there.
 void name_channels(LayerDescription& layer);
 
 /// Reads the data, and adds the defaults for the camera (default_camera() of visible_corners()),

@@ -12,10 +12,10 @@ struct PellucidSamplerJob {
   PellucidPacketJob grid_and_rays;  ///< of this the grid, its blocks, rays and results
   PellucidSamplingRule rule;
   PellucidView<PellucidSamplerTransfer> transfer;
-  PellucidView<PellucidPreintegrated> preintegrated;  ///< empty where the rule is another
+  PellucidView<PellucidPreintegrated> preintegrated;  ///< null unless the rule is preintegrated
   PellucidView<PellucidLight> light;                  ///< null: unlit
-  double step;                                        ///< world length
-  double stop;                                        ///< the transparency at which a ray ends
+  double step;                                        ///< world length > 0
+  double stop;                                        ///< transparency at which a ray ends, [0, 1]
 };
 
 PELLUCID_KERNEL(pellucid_sample_packets, const PellucidSamplerJob);

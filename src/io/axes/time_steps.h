@@ -13,14 +13,15 @@ namespace pellucid {
 /// Returns "5 times (0, 3, 6, 9, 12); --time chooses one", with the first and the last of many.
 std::string times_note(const std::vector<double>& times);
 
-/// Returns "step 2 of 5 is read, time 3 (nearest to 4)". `step` counts from 0.
+/// Returns "step 2 of 5 is read, time 3 (nearest to 4)", without the bracket where the time
+/// is met exactly. `step` counts from 0.
 std::string step_note(const std::vector<double>& times, std::size_t step, double wanted);
 
 /// Returns the times of steps that follow each other at one distance.
 std::vector<double> even_times(std::size_t count, double first, double step);
 
-/// Throws Error that begins with `name` where several times have one plane each, which make no
-/// volume of points.
+/// Throws Error that begins with `name` if there are two or more times of one plane each, which is
+/// no volume, unless `options.centering` is `cell`.
 void refuse_movie(std::size_t times, std::int64_t planes, const ReadOptions& options,
                   const std::string& name);
 

@@ -105,7 +105,8 @@ std::string type_of(const itk::ImageIOBase& io, const std::string& name) {
   }
 }
 
-// What is more than one number at each point, or on more than three axes.
+/// Sets how many components there are, and whether they lie at each point or along a fourth axis.
+/// Throws Error if both hold several, or a pixel is no list of numbers.
 void find_components(const itk::ImageIOBase& io, const std::string& name, ItkHeader& header) {
   const unsigned components = io.GetNumberOfComponents();
   if (components > static_cast<unsigned>(std::numeric_limits<int>::max())) {

@@ -33,14 +33,14 @@ auto checked(const Node& node, const Make& make) {
 std::array<Node, 3> three(const Node& node);
 /// [x, y, z].
 Vec3<double> vector(const Node& node);
-/// [x, y, z] of a length above 0.
+/// Reads [x, y, z] of a length above 0. Throws Error at the node, as all of these do.
 Vec3<double> direction(const Node& node);
-/// [r, g, b], each from 0 to `most`.
+/// Reads [r, g, b], each from 0 to `most`.
 Rgb<double> linear_rgb(const Node& node, double most = largest_number);
 Background background(const Node& node);
-/// From 1 to 8 numbers.
+/// Reads 1 to 8 numbers, each at least `lower`.
 std::vector<double> numbers(const Node& list, double lower = -largest_value);
-/// From 1 to 8 rows of `columns` numbers.
+/// Reads 1 to 8 rows of `columns` numbers.
 std::vector<std::vector<double>> matrix(const Node& rows, std::size_t columns);
 /// Returns a string that is_channel_name().
 std::string channel_name(const Node& node);

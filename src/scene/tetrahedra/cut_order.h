@@ -6,8 +6,8 @@
 
 namespace pellucid {
 
-/// Puts what lies together in space together in memory, which rays go through: the points of a new
-/// cut, its tetrahedra and their cells, in the order of a Morton curve. `middle` is left as it was.
+/// Sorts the points of a new cut, its tetrahedra and their cells along a Morton curve, so that a
+/// ray reads memory that lies together. Sets `numbers`; leaves `middle` as it was.
 void put_in_spatial_order(CellCut& cut, const ParallelFor& parallel);
 
 }  // namespace pellucid

@@ -9,8 +9,7 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// Returns what places in the world, from PacketLight's origin, and others along a span may be off
-/// by.
+/// Returns the largest rounding error of a position along a span, as a world length.
 inline float place_rounding(const PacketLight& light) noexcept {
   return 8 * rounding_unit<float> * light.farthest;
 }
@@ -21,13 +20,13 @@ struct LightOfPiece {
   using F = Batch<float, N>;
   GradientStretch<F> along;
   /// Standard deviations of the color by three and by six nodes: error_of_three_nodes() and
-  /// error_of_six_nodes() times the range of the colors, of which four are charged, or six to a
-  /// piece alone and to pieces that are alike (LikeErrors).
+  /// error_of_six_nodes() times the range of the colors. Errors are charged at four deviations, at
+  /// six where a piece is alone or pieces are alike (LikeErrors).
   F by_three, by_six;
-  F color_error;        ///< what the color may be off by beside: tables' kinks and rounding
-  F range;              ///< of the colors
-  F turns, sharpness;   ///< as of error_of_three_nodes()
-  LitBounds<F> bounds;  ///< on what light makes of a color
+  F color_error;                        ///< of the color beside these: tables' kinks and rounding
+  F range;                              ///< of the colors
+  F turns, sharpness;                   ///< as of error_of_three_nodes()
+  LitBounds<F> bounds;                  ///< on what light makes of a color
   typename LikeErrors<F>::Signs signs;  ///< of the piece, for errors that repeat
 };
 

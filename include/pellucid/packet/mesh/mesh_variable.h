@@ -8,7 +8,7 @@
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
 
-/// The values in these tetrahedra.
+/// Returns value[index] of each lane. Every lane's index must be valid, for none is masked.
 template <class S, int N>
 Batch<S, N> load_values(const double* value, Batch<std::int32_t, N> index) noexcept {
   std::int32_t at[N];
