@@ -314,7 +314,8 @@ def test_what_is_refused_is_refused_in_one_line(change, words):
     ("isosurface", "opacity", 1.5), ("slice", "opacity", -0.5),
 ])
 def test_no_scene_is_saved_with_numbers_that_a_file_refuses(tmp_path, part, key, number):
-    scene = pellucid.scene_of(smooth(), POINTS, size=SIZE, shading=pellucid.Shading(),
+    scene = pellucid.scene_of(smooth(), POINTS, size=SIZE, camera=pellucid.Camera(),
+                              shading=pellucid.Shading(),
                               isosurfaces=[pellucid.Isosurface(0.5)],
                               slices=[pellucid.Slice()])
     layer = scene.layers[0]
