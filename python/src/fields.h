@@ -38,7 +38,9 @@ class FieldReader {
     const std::string what = prefix_ + key.name;
     if constexpr (std::is_same_v<Kind, scene_fields::Number>) {
       if (std::is_same_v<Member, double> || !from.is_none()) {
-        member = number_in(kind, from, what);
+        const double number = number_of(from, what);
+        if (key.applies) check_range(kind, number, what);
+        member = number;
       }
     } else if constexpr (std::is_same_v<Kind, scene_fields::Vector>) {
       member = vector_of(from, what);
@@ -54,11 +56,11 @@ class FieldReader {
   }
 
  private:
-  static double number_in(const scene_fields::Number& kind, const py::object& from,
+  static void check_range(const scene_fields::Number& kind, double number,
                           const std::string& what) {
-    const double number = number_of(from, what);
-    if (kind.has(number)) return number;
-    throw Error(what + ": expected a number " + kind.range() + ", got " + short_repr(from));
+    if (kind.has(number)) return;
+    throw Error(what + ": expected a number " + kind.range() + ", got " +
+                scene_json::number_text(number));
   }
 
   py::handle object_;

@@ -309,7 +309,7 @@ def test_what_is_refused_is_refused_in_one_line(change, words):
 
 @pytest.mark.parametrize("part, key, number", [
     ("camera", "vertical_angle", 500), ("camera", "vertical_angle", float("nan")),
-    ("camera", "parallel_scale", -1), ("integration", "tolerance", 2),
+    ("integration", "tolerance", 2), ("integration", "tolerance", 1e-9),
     ("integration", "step", 0), ("shading", "ambient", -1), ("shading", "power", 0.5),
     ("isosurface", "opacity", 1.5), ("slice", "opacity", -0.5),
 ])
