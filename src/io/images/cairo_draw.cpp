@@ -65,7 +65,8 @@ class Sheet {
       bars += panel.colors.empty() ? 0 : 1;
     }
     const double bar_height =
-        bars == 0 ? 0 : std::clamp((space - fixed) / bars, 2 * font_, tallest_bar * height_);
+        bars == 0 ? 0
+                  : std::min(std::max((space - fixed) / bars, 2 * font_), tallest_bar * height_);
     const double total =
         fixed + bars * bar_height + between_panels * font_ * static_cast<double>(panels.size() - 1);
     double top = std::max((height_ - total) / 2, 0.0);
