@@ -118,7 +118,8 @@ TEST_F(VtkGhosts, HiddenPointsHideCellsOfUnstructuredGrids) {
     return text.insert(text.find(end), xml_array("UInt8", "vtkGhostType", flags));
   };
   EXPECT_EQ(read_mesh(write("a.vtu", with("0 0 0 0 2"))).ghost_cells, 1U);
-  EXPECT_EQ(read_mesh(write("a.vtu", with("0 0 0 0 2"))).grid.cell_numbers.front(), 0);
+  // Cell 0 is left, whose number is its place.
+  EXPECT_TRUE(read_mesh(write("a.vtu", with("0 0 0 0 2"))).grid.cell_numbers.empty());
   EXPECT_EQ(read_mesh(write("a.vtu", with("0 0 0 0 1"))).ghost_cells, 0U);
   // The triangle has this corner, too.
   EXPECT_EQ(read_mesh(write("a.vtu", with("2 0 0 0 0"))).ghost_cells, 2U);
