@@ -60,7 +60,7 @@ class Levels {
   void add_exceeded_by(double share) {
     const std::vector<double>& v = data_.values.values;
     const auto n = static_cast<double>(v.size());
-    const auto i = static_cast<std::size_t>(std::clamp(n * (1 - share), 1.0, n - 1));
+    const auto i = static_cast<std::size_t>(std::min(std::max(n * (1 - share), 1.0), n - 1));
     add(v[i]);
   }
   void add(double value) {
