@@ -86,7 +86,8 @@ TEST(LightScene, OnlySurfacesWithoutAFunction) {
   for (const TransferFunction::Point& point : surface) EXPECT_EQ(point.extinction, 0);
   const Points slice = function(R"(, "slices": [{"point": [0, 0, 0], "normal": [1, 0, 0]}])");
   ASSERT_EQ(slice.size(), 2U);
-  const Volume& data = *test::volume_of(make_scene(layer(ramp))).volume;
+  const Scene whole = make_scene(layer(ramp));
+  const Volume& data = *test::volume_of(whole).volume;
   EXPECT_EQ(slice[0].value, data.statistics().minimum);
   EXPECT_EQ(slice[1].value, data.statistics().maximum);
   EXPECT_EQ(slice[0].color, (Rgb<double>{0, 0, 0}));
