@@ -184,7 +184,7 @@ TEST_F(SmoothFrames, BehindCornersAreWithinWhatTheySay) {
 }
 
 TEST_F(SmoothFrames, BesideVacuumAreWithinWhatTheySay) {
-  // Stretches are given up in the middle of cells, and their rest is handed back to binary64.
+  // Packets stop in the middle of cells here, and binary64 integrates the rest of the ray.
   const Seen seen = compare_random_scenes(100, {3e-2, 1.0 / 512, 4e-4, 1e-4}, [&](unsigned seed) {
     random_.seed(seed);
     const int across = static_cast<int>(uniform(10, 30)), first = static_cast<int>(uniform(9, 30)),

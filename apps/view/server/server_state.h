@@ -40,7 +40,7 @@ class PageSocket {
   virtual void send(PageMessage message) = 0;
   virtual void close() = 0;
 
-  /// Whether it has had a message of its own, before which it gets none that goes to all.
+  /// Set by the first message of its own; until then it gets none that goes to all.
   bool is_greeted = false;
 };
 
