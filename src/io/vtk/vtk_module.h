@@ -31,7 +31,7 @@ using CheckVtkXml = std::function<CheckedVtkXml(const std::filesystem::path& pat
 using ReadWithVtk = void(const std::filesystem::path& path, VtkFormat format,
                          const MeshReadOptions& options, const CheckVtkXml& check,
                          VtkAnswer& answer);
-inline constexpr const char* read_with_vtk_name = "pellucid_read_with_vtk_3";
+inline constexpr const char* read_with_vtk_name = "pellucid_read_with_vtk_4";
 
 /// An array by its name in the file.
 struct VtkArrayName {

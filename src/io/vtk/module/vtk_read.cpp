@@ -47,7 +47,7 @@ void update(vtkAlgorithm& reader, const MeshReadOptions& options, const VtkMessa
 
 }  // namespace pellucid
 
-extern "C" __attribute__((visibility("default"))) void pellucid_read_with_vtk_3(
+extern "C" __attribute__((visibility("default"))) void pellucid_read_with_vtk_4(
     const std::filesystem::path& path, pellucid::VtkFormat format,
     const pellucid::MeshReadOptions& options, const pellucid::CheckVtkXml& check,
     pellucid::VtkAnswer& answer) {

@@ -98,7 +98,7 @@ void read_data(const std::filesystem::path& path, const std::string& kind,
                const MeshReadOptions& options, const CheckVtkXml& check,
                const VtkMessages& messages, MeshBlocks& mesh);
 
-/// Reads the files of a list, which was checked with them.
+/// Reads the files of a list.
 void read_listed(const std::filesystem::path& path, const std::string& kind,
                  const std::vector<std::string>& files, const CheckVtkXml& check,
                  const VtkMessages& messages, MeshBlocks& mesh) {
@@ -143,7 +143,10 @@ void read_data(const std::filesystem::path& path, const std::string& kind,
   const CheckedVtkXml checked = check(path);
   if (const auto files = listed_files(path, kind); !files.empty()) {
     refuse_time(options);
-    read_listed(path, kind, files, check, messages, mesh);
+    const auto check_once = [&](const std::filesystem::path& file) {
+      return checked.files.contains(file) ? CheckedVtkXml{} : check(file);
+    };
+    read_listed(path, kind, files, check_once, messages, mesh);
     return;
   }
   if (kind == "UnstructuredGrid") {

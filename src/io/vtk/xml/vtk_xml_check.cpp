@@ -394,6 +394,7 @@ void check_list(const fs::path& path, const VtkXmlFile& list, const IsVtkArrayWa
     }
     try {
       check_listed_file(read_vtk_xml(file), piece, list, is_wanted);
+      if (!structured) checked.files.insert(file);
     } catch (const Error& error) {
       throw Error("its piece " + one_line(piece.source.substr(0, 200)) + ": " + error.what());
     }
@@ -402,7 +403,7 @@ void check_list(const fs::path& path, const VtkXmlFile& list, const IsVtkArrayWa
 
 CheckedVtkXml check_file(const fs::path& path, const IsVtkArrayWanted& is_wanted, int depth) {
   const VtkXmlFile file = read_vtk_xml(path);
-  CheckedVtkXml checked{file.times, {}};
+  CheckedVtkXml checked{file.times, {}, {}};
   if (depth > 0 && file.times.size() > 1) {
     throw Error("it has steps in time, of which a file that names it chooses none; give it alone");
   }
@@ -420,7 +421,9 @@ CheckedVtkXml check_file(const fs::path& path, const IsVtkArrayWanted& is_wanted
     const fs::path part = beside(path, name);
     if (depth >= deepest || !is_vtk_xml(part)) continue;
     try {
-      check_file(part, is_wanted, depth + 1);
+      CheckedVtkXml of_part = check_file(part, is_wanted, depth + 1);
+      if (of_part.pieces.empty()) checked.files.insert(part);
+      checked.files.merge(of_part.files);
     } catch (const Error& error) {
       throw Error("its part " + one_line(name.substr(0, 200)) + ": " + error.what());
     }

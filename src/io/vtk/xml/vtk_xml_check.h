@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <vector>
 
 #include "vtk_xml_arrays.h"
@@ -23,6 +24,8 @@ struct ListedPiece {
 struct CheckedVtkXml {
   std::vector<double> times;        ///< of its steps in time; empty: there are none
   std::vector<ListedPiece> pieces;  ///< of a list of structured grids
+  /// Files that it names and that were checked with it, but for lists of structured grids.
+  std::set<std::filesystem::path> files;
 };
 
 /// VTK leaves memory as it is where a piece lacks an array, where pieces do not cover the extent,
