@@ -23,7 +23,6 @@ TOP = ("apps", "benchmarks", "examples", "include", "plugins", "python", "src", 
 # Folders with more files, and how many they may have.
 LARGE = {
     "src/cpu/layers": 45,
-    "tests/scenes": 50,
 }
 # Folders of more than ten files that have no README.md.
 UNEXPLAINED = {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Light and surfaces whose pixels are known; the scenes of the tolerance matrix hold them against
-// the reference (tests/scenes/gallery_light.cpp).
+// the reference (tests/scenes/gallery/light.cpp).
 #include <gtest/gtest.h>
 
 #include <algorithm>

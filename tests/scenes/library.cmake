@@ -5,10 +5,10 @@ find_package(Boost REQUIRED)
 find_package(Threads REQUIRED)
 set(scenes_folder "${CMAKE_CURRENT_LIST_DIR}")
 set(scenes_sources
-  analytic.cpp cameras.cpp difference.cpp gallery.cpp gallery_cells.cpp gallery_gaussians.cpp
-  gallery_grids.cpp gallery_layers.cpp gallery_light.cpp gallery_marschner_lobb.cpp
-  gallery_meshes.cpp gallery_scans.cpp gallery_strides.cpp gallery_tables.cpp layer_makers.cpp
-  makers.cpp meshes.cpp peers.cpp real.cpp scene_hash.cpp)
+  analytic.cpp cameras.cpp difference.cpp gallery/cells.cpp gallery/gallery.cpp
+  gallery/gaussians.cpp gallery/grids.cpp gallery/layers.cpp gallery/light.cpp
+  gallery/marschner_lobb.cpp gallery/meshes.cpp gallery/scans.cpp gallery/strides.cpp
+  gallery/tables.cpp layer_makers.cpp makers.cpp meshes.cpp peers.cpp real.cpp scene_hash.cpp)
 set(matrix_sources reference_frame.cpp reference_truth.cpp tolerance_matrix.cpp verdict.cpp)
 add_library(pellucid_test_scenes STATIC)
 list(TRANSFORM scenes_sources PREPEND "${scenes_folder}/")
