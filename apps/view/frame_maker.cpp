@@ -39,9 +39,8 @@ PageMessage as_frame(PageMessage message) {
 
 }  // namespace
 
-bool FrameMaker::render(const Scene& scene, const Lettering& lettering, bool with_error_map,
-                        std::function<bool()> is_overtaken) {
-  const bool is_exact = scene.integration.method == Method::exact;
+void FrameMaker::begin(const Scene& scene, const Lettering& lettering, bool with_error_map,
+                       std::function<bool()> is_overtaken) {
   {
     const std::lock_guard lock(mutex_);
     stop_ = {};
@@ -49,54 +48,78 @@ bool FrameMaker::render(const Scene& scene, const Lettering& lettering, bool wit
   }
   scene_ = &scene;
   lettering_ = &lettering;
+  with_error_map_ = with_error_map;
   is_overtaken_ = std::move(is_overtaken);
   start_ = Clock::now();
   shown_in_time_ = false;
   ++number_;
   exact_.reset();
-  int levels = preview_levels(scene.size);
   const double pixels = 1.0 * scene.size.width * scene.size.height;
-  if (is_exact && moving_.are_sampled(pixels, moving_seconds)) {
-    if (!render_samples(scene)) return false;
-    if (shown_in_time_) levels = std::max(shown_level_ - 1, 0);
-  }
-  start_phase(!is_exact, levels);
-  RenderOptions options;
-  options.monitor.preview = levels;
-  options.outputs.error = with_error_map && is_exact;
-  options.monitor.tile = [this](const TileResult& result) { return tile_is_done(result); };
-  options.monitor.stop = stop_.get_token();
-  try {
-    auto [image, report] = renderer_.render(scene, options);
-    measure(0);
-    publish_exact(image, report);
-    exact_ = std::move(image);
-    return true;
-  } catch (const Cancelled&) {
-    return false;
+  if (scene.integration.method == Method::exact && moving_.are_sampled(pixels, moving_seconds)) {
+    begin_samples();
+  } else {
+    begin_final(preview_levels(scene.size));
   }
 }
 
-bool FrameMaker::render_samples(const Scene& scene) {
-  start_phase(true, preview_levels(scene.size));
+FrameMaker::State FrameMaker::advance(double seconds) {
+  // What came while others had their turn; during one, tile_is_done() asks.
+  if (shown_in_time_ && is_overtaken_()) return State::overtaken;
+  return is_before_final_ ? advance_samples(seconds) : advance_final(seconds);
+}
+
+void FrameMaker::begin_samples() {
+  is_before_final_ = true;
   samples_suffice_ = false;
-  RenderOptions options;
-  options.monitor.preview = levels_;
-  options.monitor.tile = [this](const TileResult& result) { return tile_is_done(result); };
-  options.monitor.stop = stop_.get_token();
-  try {
-    Image image = sampler_.render(sampled_scene(scene), options).image;
-    measure(0);
-    return show(0, ImageView(image));
-  } catch (const Cancelled&) {
-    return samples_suffice_;
-  }
+  begin_phase(true, preview_levels(scene_->size), sampler_, sampled_scene(*scene_), false);
 }
 
-void FrameMaker::start_phase(bool sampled, int levels) {
+void FrameMaker::begin_final(int levels) {
+  is_before_final_ = false;
+  const bool is_exact = scene_->integration.method == Method::exact;
+  begin_phase(!is_exact, levels, renderer_, *scene_, with_error_map_ && is_exact);
+}
+
+void FrameMaker::begin_phase(bool sampled, int levels, Renderer& renderer, const Scene& scene,
+                             bool with_error) {
   is_sampled_ = sampled;
   phase_start_ = Clock::now();
   level_ = levels_ = levels;
+  RenderOptions options;
+  options.monitor.preview = levels;
+  options.outputs.error = with_error;
+  options.monitor.tile = [this](const TileResult& result) { return tile_is_done(result); };
+  options.monitor.stop = stop_.get_token();
+  frame_.emplace(renderer.begin(scene, std::move(options)));
+}
+
+FrameMaker::State FrameMaker::advance_samples(double seconds) {
+  bool goes_on = false;
+  try {
+    if (!frame_->advance(seconds)) return State::goes_on;
+    Image image = frame_->take().image;
+    measure(0);
+    goes_on = show(0, ImageView(image));
+  } catch (const Cancelled&) {
+    goes_on = samples_suffice_;
+  }
+  if (!goes_on) return State::overtaken;
+  begin_final(shown_in_time_ ? std::max(shown_level_ - 1, 0) : preview_levels(scene_->size));
+  return State::goes_on;
+}
+
+FrameMaker::State FrameMaker::advance_final(double seconds) {
+  try {
+    if (!frame_->advance(seconds)) return State::goes_on;
+  } catch (const Cancelled&) {
+    return State::overtaken;
+  }
+  auto [image, report] = frame_->take();
+  frame_.reset();  // it holds the data
+  measure(0);
+  publish_exact(image, report);
+  exact_ = std::move(image);
+  return State::exact;
 }
 
 /// Notes that a level of the phase is complete.

@@ -30,10 +30,16 @@ class FrameMaker {
   FrameMaker(int threads, Publish publish)
       : publish_(std::move(publish)), renderer_(threads), sampler_(threads) {}
 
-  /// Renders the scene until it is exact, and returns true; or until it is overtaken by a newer
-  /// one, and returns false. Throws Error.
-  bool render(const Scene& scene, const Lettering& lettering, bool with_error_map,
-              std::function<bool()> is_overtaken);
+  /// How far a frame is.
+  enum class State { goes_on, exact, overtaken };
+
+  /// Begins a frame of the scene, which must not change before it ends. `is_overtaken` tells
+  /// whether there is a newer one. Throws Error.
+  void begin(const Scene& scene, const Lettering& lettering, bool with_error_map,
+             std::function<bool()> is_overtaken);
+  /// Renders for some seconds: until the frame is exact, overtaken, or goes on another time. Throws
+  /// Error, which ends the frame.
+  State advance(double seconds);
   /// Ends the frame at once if a picture of it was shown, because it is overtaken. Safe to call
   /// from any thread.
   void interrupt();
@@ -51,10 +57,13 @@ class FrameMaker {
   /// When each level was complete, in seconds; of the last frame that had come so far. 0: none had.
   using LevelSeconds = std::array<double, largest_preview + 1>;
 
-  /// Shows sampled pictures until a finer one would take too long. Returns false if the frame is
-  /// overtaken.
-  bool render_samples(const Scene& scene);
-  void start_phase(bool sampled, int levels);
+  void begin_samples();
+  void begin_final(int levels);
+  void begin_phase(bool sampled, int levels, Renderer& renderer, const Scene& scene,
+                   bool with_error);
+  /// Goes on with what is sampled until a finer picture would take too long.
+  State advance_samples(double seconds);
+  State advance_final(double seconds);
   void measure(int level);
   bool tile_is_done(const TileResult& result);
   bool level_is_done(int level, const ImageView& image);
@@ -74,6 +83,9 @@ class FrameMaker {
   Json answered_ = Json::object();
 
   // Of the frame that is being rendered:
+  std::optional<SteppedFrame> frame_;  ///< of the phase: what is sampled, or what comes after
+  bool is_before_final_ = false;       ///< whether another phase follows
+  bool with_error_map_ = false;
   const Scene* scene_ = nullptr;
   const Lettering* lettering_ = nullptr;
   std::function<bool()> is_overtaken_;

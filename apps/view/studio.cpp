@@ -28,6 +28,9 @@ constexpr std::size_t max_waiting = 4096;
 /// Size of waiting messages. Commands take some twenty times as much memory at worst.
 constexpr std::size_t max_waiting_bytes = std::size_t{16} << 20;
 
+/// Until a frame is done, however long it takes.
+constexpr double endless = 1e9;
+
 constexpr const char* defect = "; this is a defect of pellucid, please report it";
 
 /// Tells whether a command begins a fit, whose outcome comes later.
@@ -234,7 +237,7 @@ struct Studio::Visitor {
 };
 
 Studio::Studio(SceneState state, bool keeps_camera, int threads, SceneChanged changed, Send send,
-               std::vector<std::size_t> quick_layers)
+               std::vector<std::size_t> quick_layers, Worker worker)
     : state_(std::move(state)),
       parallel_(parallel_for(threads)),
       changed_(std::move(changed)),
@@ -245,7 +248,7 @@ Studio::Studio(SceneState state, bool keeps_camera, int threads, SceneChanged ch
       thumbnails_(threads),
       quick_layers_(std::move(quick_layers)) {
   if (keeps_camera) first_camera_ = state_.scene().camera;
-  thread_ = std::thread([this] { run(); });
+  if (worker == Worker::own_thread) thread_ = std::thread([this] { run(); });
 }
 
 Studio::~Studio() {
@@ -255,7 +258,7 @@ Studio::~Studio() {
   }
   wakes_.notify_one();
   frames_.interrupt();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
   cancel_fit();
   fitting_.reset();
 }
@@ -310,27 +313,51 @@ void Studio::skip(PageId page, std::uint64_t number) {
 }
 
 void Studio::run() {
-  std::deque<Asked> asked;
-  std::vector<PageId> opened;
   refine_next();
-  while (take_asked(asked, opened)) {
-    try {
-      carry_out(std::exchange(asked, {}));
-      finish_fit();
-      if (!std::exchange(opened, {}).empty()) {
-        stale_ = true;  // a new page has no picture yet
-        send_scene();
-      }
-      if (stale_) {
-        render();
-      } else if (!failed_) {
-        show_current();
-      }
-    } catch (const std::exception& error) {
-      // What telling the scene throws ends neither the program nor the page.
-      stale_ = false;
-      send_({}, error_message(error.what()));
+  while (true) {
+    {
+      std::unique_lock lock(mutex_);
+      wakes_.wait(lock, [&] { return ended_ || has_work(); });
+      if (ended_) return;
     }
+    work(endless);
+  }
+}
+
+bool Studio::advance(double seconds) {
+  const auto has_more = [&] {
+    const std::lock_guard lock(mutex_);
+    return has_work();
+  };
+  if (!has_more()) return false;
+  work(seconds);
+  return has_more();
+}
+
+bool Studio::has_work() const {
+  return is_rendering_ || !asked_.empty() || skipped_ || !opened_.empty() || fitted_ ||
+         (stale_ && pages_ > 0);
+}
+
+void Studio::work(double seconds) {
+  try {
+    if (is_rendering_) {
+      // What only asks does not wait for the frame; what ends it waits for its first picture.
+      carry_out(take_what_asks());
+      return render(seconds);
+    }
+    carry_out(take_asked());
+    finish_fit();
+    greet_opened();
+    if (stale_) {
+      render(seconds);
+    } else if (!failed_) {
+      show_current();
+    }
+  } catch (const std::exception& error) {
+    // What telling the scene throws ends neither the program nor the page.
+    stale_ = false;
+    send_({}, error_message(error.what()));
   }
 }
 
@@ -339,18 +366,38 @@ bool Studio::has_ended() {
   return ended_;
 }
 
-bool Studio::take_asked(std::deque<Asked>& asked, std::vector<PageId>& opened) {
-  std::unique_lock lock(mutex_);
-  wakes_.wait(lock, [&] {
-    return ended_ || !asked_.empty() || skipped_ || !opened_.empty() || fitted_ ||
-           (stale_ && pages_ > 0);
-  });
+/// Tells whether the picture that is being rendered is of no use any more. Needs the mutex.
+bool Studio::has_overtaken() const {
+  return ended_ || fitted_ ||
+         std::ranges::any_of(asked_, [](const Asked& asked) { return ends_frame(asked.command); });
+}
+
+/// Takes what was asked, unless a part of it ends the frame. Pages are told of what they sent
+/// meanwhile behind the frame, which does not count it.
+std::deque<Studio::Asked> Studio::take_what_asks() {
+  const std::lock_guard lock(mutex_);
+  if (has_overtaken() || asked_.empty()) return {};
+  skipped_ = true;
+  asked_bytes_ = 0;
+  return std::exchange(asked_, {});
+}
+
+std::deque<Studio::Asked> Studio::take_asked() {
+  const std::lock_guard lock(mutex_);
   skipped_ = false;
   answered_ = received_;
-  asked = std::exchange(asked_, {});
   asked_bytes_ = 0;
-  opened = std::exchange(opened_, {});
-  return !ended_;
+  return std::exchange(asked_, {});
+}
+
+/// A new page has no picture yet.
+void Studio::greet_opened() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (std::exchange(opened_, {}).empty()) return;
+  }
+  stale_ = true;
+  send_scene();
 }
 
 void Studio::carry_out(std::deque<Asked> asked) {
@@ -390,17 +437,19 @@ void Studio::show_current() {
   send_({}, text_message({{"type", "current"}, {"answered", answered_json(answered_)}}));
 }
 
-void Studio::render() {
+void Studio::render(double seconds) {
   failed_ = true;
   try {
-    const auto is_overtaken = [this] {
-      const std::lock_guard lock(mutex_);
-      return ended_ || fitted_ || std::ranges::any_of(asked_, [](const Asked& asked) {
-               return ends_frame(asked.command);
-             });
-    };
-    frames_.set_answered(answered_json(answered_));
-    stale_ = !frames_.render(state_.scene(), lettering_, with_error_map_, is_overtaken);
+    if (!std::exchange(is_rendering_, false)) {
+      frames_.set_answered(answered_json(answered_));
+      frames_.begin(state_.scene(), lettering_, with_error_map_, [this] {
+        const std::lock_guard lock(mutex_);
+        return has_overtaken();
+      });
+    }
+    const FrameMaker::State state = frames_.advance(seconds);
+    is_rendering_ = state == FrameMaker::State::goes_on;
+    stale_ = state != FrameMaker::State::exact;
     failed_ = false;
   } catch (const Error& error) {
     send_failure(error.what());

@@ -33,10 +33,13 @@ using Send = std::function<void(std::optional<PageId>, PageMessage)>;
 /// being rendered.
 class Studio {
  public:
+  /// Who carries out what is asked: a thread of the studio, or whoever calls advance().
+  enum class Worker { own_thread, caller };
+
   /// `keeps_camera`: whether the camera was chosen by the user, and not fitted to the data.
   /// `changed` may be empty.
   Studio(SceneState state, bool keeps_camera, int threads, SceneChanged changed, Send send,
-         std::vector<std::size_t> quick_layers = {});
+         std::vector<std::size_t> quick_layers = {}, Worker worker = Worker::own_thread);
   ~Studio();
   Studio(const Studio&) = delete;
   Studio& operator=(const Studio&) = delete;
@@ -52,6 +55,10 @@ class Studio {
   void receive(PageId page, Command command, std::size_t bytes, std::uint64_t number);
   /// Counts a message that holds no command for the studio.
   void skip(PageId page, std::uint64_t number);
+
+  /// Carries out what was asked, and renders for some seconds. Returns whether there is more to do.
+  /// For a studio without a thread of its own.
+  bool advance(double seconds);
 
  private:
   struct Asked {
@@ -72,11 +79,17 @@ class Studio {
   void run();
   /// Returns false when the studio is to end.
   bool has_ended();
-  bool take_asked(std::deque<Asked>& asked, std::vector<PageId>& opened);
+  /// Returns whether there is something to do. Needs the mutex.
+  bool has_work() const;
+  bool has_overtaken() const;
+  void work(double seconds);
+  std::deque<Asked> take_asked();
+  std::deque<Asked> take_what_asks();
   void carry_out(std::deque<Asked> asked);
+  void greet_opened();
   void show_current();
   void carry_out(const Asked& asked);
-  void render();
+  void render(double seconds);
   void send_failure(const std::string& why);
   void send_scene();
   void send_file(PageId page, SavedFile file);
@@ -106,6 +119,7 @@ class Studio {
   Renderer thumbnails_;
   bool with_error_map_ = false, is_fitted_ = false;
   std::vector<std::size_t> quick_layers_;
+  bool is_rendering_ = false;                 ///< whether a frame goes on
   bool stale_ = true;                         ///< whether the picture is not that of the scene
   bool failed_ = false;                       ///< whether there is no picture of the scene
   std::map<PageId, std::uint64_t> answered_;  ///< last message of each page that was carried out
@@ -113,8 +127,8 @@ class Studio {
   std::mutex mutex_;  ///< of the following
   std::condition_variable wakes_;
   std::deque<Asked> asked_;
-  std::size_t asked_bytes_ = 0;  ///< of their messages
-  std::vector<PageId> opened_;
+  std::size_t asked_bytes_ = 0;               ///< of their messages
+  std::vector<PageId> opened_;                ///< pages that have no scene yet
   std::map<PageId, std::uint64_t> received_;  ///< last message of each page
   std::size_t pages_ = 0;
   bool skipped_ = false;  ///< whether messages came that are no commands

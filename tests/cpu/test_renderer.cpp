@@ -166,6 +166,55 @@ TEST(Renderer, StartsAFrameThatCanBeWatched) {
   EXPECT_GT(tiles, 0) << "the caller's callback is called too";
 }
 
+TEST(Renderer, RendersAFrameInTurns) {
+  Renderer renderer(2);
+  for (const int preview : {0, 3}) {
+    for (Scene scene : {scene_of({layer_of("shells")}), scene_of({layer_of("marschner_lobb")})}) {
+      scene.size = {200, 150};
+      RenderOptions options;
+      options.monitor.preview = preview;
+      options.outputs.error = true;
+      int tiles = 0;
+      options.monitor.tile = [&](const TileResult&) {
+        ++tiles;
+        return true;
+      };
+      SteppedFrame frame = renderer.begin(scene, options);
+      EXPECT_THROW(frame.take(), Error) << "nothing is done yet";
+      int turns = 1, told = -1;
+      while (!frame.advance(0)) {
+        EXPECT_GT(tiles, told) << "each turn renders something";
+        told = tiles - (turns++ == 1 ? 1 : 0);
+      }
+      EXPECT_GT(turns, 3);
+      EXPECT_TRUE(frame.advance(0)) << "a frame that is done stays so";
+      const auto [image, report] = frame.take();
+      options.monitor.tile = {};
+      const auto [whole, of_whole] = render(scene, options);
+      EXPECT_EQ(image.pixels, whole.pixels);
+      EXPECT_EQ(image.error, whole.error);
+      EXPECT_EQ(report.rays, of_whole.rays);
+      EXPECT_EQ(report.pixels_interpolated, of_whole.pixels_interpolated);
+      EXPECT_GT(report.seconds, 0);
+    }
+  }
+}
+
+TEST(Renderer, CancelsAFrameBetweenItsTurns) {
+  Renderer renderer(1);
+  std::stop_source stop;
+  RenderOptions options;
+  options.monitor.stop = stop.get_token();
+  SteppedFrame frame = renderer.begin(slow_scene(), options);
+  EXPECT_FALSE(frame.advance(0.01));
+  EXPECT_THROW(frame.advance(-1), Error);
+  stop.request_stop();
+  EXPECT_THROW(frame.advance(1), Cancelled);
+  Scene wrong = scene_of({layer_of("shells")});
+  wrong.integration.tolerance = -1;
+  EXPECT_THROW(renderer.begin(wrong), Error);
+}
+
 TEST(Renderer, ShowsCoarseLevelsFirst) {
   Renderer renderer(2);
   Scene scene = slow_scene();

@@ -57,6 +57,31 @@ class RunningFrame {
   std::unique_ptr<Job> job_;
 };
 
+/// A frame that the caller's thread renders bit by bit between other work of its own, and other
+/// threads with it while it does: for a program whose one thread also answers its user. The handle
+/// can be moved; one that was moved from may only be assigned to or destroyed.
+class SteppedFrame {
+ public:
+  SteppedFrame(SteppedFrame&&) noexcept;
+  SteppedFrame& operator=(SteppedFrame&&) noexcept;
+  ~SteppedFrame();
+
+  /// Goes on for some `seconds`, and until the tiles that are begun by then are done; the first
+  /// call makes the set-up, however long it takes. Returns whether the frame is done. Throws Error
+  /// if `seconds` is negative or NaN, and Cancelled, after which the frame may not go on.
+  bool advance(double seconds);
+  /// Returns the image and its report, whose seconds are those of the calls. Only the first call
+  /// returns the image. Throws Error unless the frame is done.
+  RenderResult take();
+
+ private:
+  friend class Renderer;
+  struct Job;
+  explicit SteppedFrame(std::unique_ptr<Job> job);
+
+  std::unique_ptr<Job> job_;
+};
+
 /// Renders frame after frame, and keeps what they share: the blocks' classes, tables and packets'
 /// set-up of each layer, found by the identity of its data and functions (the shared objects, not
 /// their contents). A camera that moves costs no set-up; a new transfer function costs its own.
@@ -87,6 +112,9 @@ class Renderer {
   /// Starts a frame and returns at once. The frame may outlive the renderer. Callbacks of the
   /// options are called by the frame's threads.
   RunningFrame start(Scene scene, RenderOptions options = {});
+  /// Begins a frame that advance() renders; its image is bitwise that of render(). Throws Error if
+  /// `scene` fails its checks.
+  SteppedFrame begin(Scene scene, RenderOptions options = {});
   /// Lets go of all that is kept.
   void clear();
 

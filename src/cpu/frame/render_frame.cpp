@@ -2,6 +2,7 @@
 #include "render_frame.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <mutex>
@@ -59,50 +60,6 @@ std::span<const Tile> tiles_of(const std::vector<Tile>& tiles, std::size_t first
   return std::span(tiles).subspan(first, end - first);
 }
 
-void render_tiles(const Frame& frame, const RenderOptions& options, const ImageView& image,
-                  RenderReport& report) {
-  const std::vector<Tile> tiles = make_tiles(frame.scene.size, options.monitor.preview);
-  std::mutex report_mutex;
-  Progress progress(options, image, tiles);
-  TileSpeed speed;
-  const std::unique_ptr<PixelInterpolator> between = PixelInterpolator::make(frame, image);
-  const auto render_level = [&](std::span<const Tile> some, int level, const auto& finish) {
-    parallel_for_ordered(some.size(), report.threads, [&](std::size_t i) {
-      RenderReport part;
-      const std::size_t pixels = render_tile(
-          frame, some[i], {level, between.get(), options.monitor.stop, &speed}, image, part);
-      if (options.monitor.stop.stop_requested()) return false;
-      {
-        const std::lock_guard lock(report_mutex);
-        add(report, part);
-      }
-      finish(some[i], pixels);
-      return !progress.cancelled();
-    });
-    if (options.monitor.stop.stop_requested() || progress.cancelled()) throw Cancelled();
-  };
-  const auto finish_tile = [&](const Tile& tile, std::size_t pixels) {
-    progress.finish_tile(tile, pixels);
-  };
-  std::size_t next_tile = 0;
-  if (between) {
-    for (int level = between->stride(); level > 1 && between->goes_on(); level /= 2) {
-      const std::span<const Tile> of_preview = tiles_of(tiles, next_tile, level);
-      if (1 << options.monitor.preview >= level) {
-        render_level(of_preview, level, finish_tile);
-        next_tile += of_preview.size();
-      } else {
-        render_level(make_lattice(frame.scene.size, level), level,
-                     [&](const Tile&, std::size_t pixels) { progress.finish_pixels(pixels); });
-      }
-      between->finish_level(level, report.threads);
-    }
-  }
-  render_level(tiles_of(tiles, next_tile, 1), 1, finish_tile);
-  progress.finish();
-  if (progress.cancelled()) throw Cancelled();
-}
-
 }  // namespace
 
 std::string_view device_name(Device device) noexcept {
@@ -126,30 +83,146 @@ Image make_image(ImageSize size, const FrameOutputs& outputs) {
   return image;
 }
 
+/// The tiles of a frame, level by level, and how far they are.
+struct FrameWork::Tiles {
+  Tiles(const ImageView& image, const Scene& scene, const RenderOptions& options, int threads,
+        LayerSetups& kept)
+      : frame(scene, options, threads, kept),
+        all(make_tiles(scene.size, options.monitor.preview)),
+        progress(options, image, all),
+        between(PixelInterpolator::make(frame, image)) {}
+
+  const Frame frame;
+  const std::vector<Tile> all;
+  Progress progress;
+  TileSpeed speed;
+  const std::unique_ptr<PixelInterpolator> between;
+  std::mutex report_mutex;
+
+  // The level that is being rendered; 0: none is yet.
+  int level = 0;
+  std::span<const Tile> of_level{};
+  std::vector<Tile> lattice;  ///< those of a level that is not told of
+  bool is_told_of = true;     ///< whether they are tiles of the preview
+  std::size_t begun = 0;      ///< tiles of this level
+  std::size_t next_tile = 0;  ///< of all: the first of the next level
+};
+
+FrameWork::FrameWork(const ImageView& image, const Scene& scene, const RenderOptions& options,
+                     int threads, LayerSetups& kept, DeviceCache& devices)
+    : image_(image), scene_(scene), options_(options), kept_(kept), devices_(devices) {
+  report_.threads = threads;
+  report_.pixels =
+      static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+}
+
+FrameWork::~FrameWork() = default;
+
+bool FrameWork::advance(std::chrono::duration<double> time) {
+  const Clock::time_point start = Clock::now();
+  const bool is_endless = time > std::chrono::hours(24);
+  const Clock::time_point end = is_endless
+                                    ? Clock::time_point::max()
+                                    : start + std::chrono::duration_cast<Clock::duration>(time);
+  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  const double before = report_.seconds;
+  bool is_done = true;
+  if (!tiles_) {
+    const Device wanted = options_.machine.device;
+    const std::shared_ptr<CachedDevice> device =
+        wanted == Device::cpu ? nullptr : devices_.find(wanted);
+    set_up();
+    report_.setup_seconds = seconds();
+    const Frame& frame = tiles_->frame;
+    const std::string reason = device ? reason_for_cpu(frame, options_) : "";
+    if (device && reason.empty()) {
+      render_on_device(frame, options_, *device, image_, report_);
+    } else {
+      if (device) report_.device = "rendered by the CPU: devices cannot do " + reason + " yet";
+      is_done = render_tiles(end);
+    }
+  } else {
+    is_done = render_tiles(end);
+  }
+  report_.seconds = before + seconds();
+  return is_done;
+}
+
+void FrameWork::set_up() {
+  tiles_ = std::make_unique<Tiles>(image_, scene_, options_, report_.threads, kept_);
+  const Frame& frame = tiles_->frame;
+  report_.sampled_in_float = scene_.integration.method != Method::exact && frame.only_layer &&
+                             frame.only_layer->fast() != nullptr;
+}
+
+bool FrameWork::render_tiles(Clock::time_point end) {
+  if (tiles_->level == 0) next_level();
+  while (true) {
+    if (!render_level(end)) return false;
+    if (tiles_->level == 1) break;
+    end_level();
+    next_level();
+  }
+  tiles_->progress.finish();
+  if (tiles_->progress.cancelled()) throw Cancelled();
+  return true;
+}
+
+/// Renders the tiles that are left of a level. Returns false where the time has come.
+bool FrameWork::render_level(Clock::time_point end) {
+  Tiles& tiles = *tiles_;
+  const std::span<const Tile> left = tiles.of_level.subspan(tiles.begun);
+  std::atomic<std::size_t> begun{0};
+  parallel_for_ordered(left.size(), report_.threads, [&](std::size_t i) {
+    begun.fetch_add(1, std::memory_order_relaxed);
+    RenderReport part;
+    const std::size_t pixels = render_tile(
+        tiles.frame, left[i],
+        {tiles.level, tiles.between.get(), options_.monitor.stop, &tiles.speed}, image_, part);
+    if (options_.monitor.stop.stop_requested()) return false;
+    {
+      const std::lock_guard lock(tiles.report_mutex);
+      add(report_, part);
+    }
+    if (tiles.is_told_of) {
+      tiles.progress.finish_tile(left[i], pixels);
+    } else {
+      tiles.progress.finish_pixels(pixels);
+    }
+    return !tiles.progress.cancelled() && (end == Clock::time_point::max() || Clock::now() < end);
+  });
+  if (options_.monitor.stop.stop_requested() || tiles.progress.cancelled()) throw Cancelled();
+  tiles.begun += begun;  // those that were begun are done, and are the first ones
+  return tiles.begun == tiles.of_level.size();
+}
+
+void FrameWork::end_level() {
+  tiles_->between->finish_level(tiles_->level, report_.threads);
+}
+
+/// Chooses the level that comes next: of pixels that others are interpolated between, or all that
+/// is left.
+void FrameWork::next_level() {
+  Tiles& tiles = *tiles_;
+  const int first = tiles.between ? tiles.between->stride() : 1;
+  tiles.level = tiles.level == 0 ? first : tiles.level / 2;
+  if (tiles.level > 1 && !tiles.between->goes_on()) tiles.level = 1;
+  tiles.begun = 0;
+  tiles.is_told_of = tiles.level == 1 || 1 << options_.monitor.preview >= tiles.level;
+  if (tiles.is_told_of) {
+    tiles.of_level = tiles_of(tiles.all, tiles.next_tile, tiles.level);
+    tiles.next_tile += tiles.of_level.size();
+  } else {
+    tiles.lattice = make_lattice(scene_.size, tiles.level);
+    tiles.of_level = tiles.lattice;
+  }
+}
+
 RenderReport render_frame(const ImageView& image, const Scene& scene, const RenderOptions& options,
                           int threads, LayerSetups& kept, DeviceCache& devices) {
-  RenderReport local;
-  local.threads = threads;
-  const auto start = std::chrono::steady_clock::now();
-  const auto seconds = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
-  const std::shared_ptr<CachedDevice> device =
-      options.machine.device == Device::cpu ? nullptr : devices.find(options.machine.device);
-  const Frame frame(scene, options, threads, kept);
-  local.pixels = static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
-  local.setup_seconds = seconds();
-  local.sampled_in_float = scene.integration.method != Method::exact && frame.only_layer &&
-                           frame.only_layer->fast() != nullptr;
-  const std::string reason = device ? reason_for_cpu(frame, options) : "";
-  if (device && reason.empty()) {
-    render_on_device(frame, options, *device, image, local);
-  } else {
-    render_tiles(frame, options, image, local);
-    if (device) local.device = "rendered by the CPU: devices cannot do " + reason + " yet";
-  }
-  local.seconds = seconds();
-  return local;
+  FrameWork work(image, scene, options, threads, kept, devices);
+  work.advance(endless);
+  return work.report();
 }
 
 }  // namespace pellucid

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <exception>
 #include <mutex>
@@ -223,6 +224,47 @@ RenderResult RunningFrame::wait() {
   if (job_->error) std::rethrow_exception(job_->error);
   const std::lock_guard lock(job_->showing);
   return {std::exchange(job_->frame.image, {}), job_->frame.report};
+}
+
+struct SteppedFrame::Job {
+  Job(std::shared_ptr<SetupCache> with, Scene of, RenderOptions how)
+      : kept(std::move(with)),
+        scene(std::move(of)),
+        options(std::move(how)),
+        image(make_image(scene.size, options.outputs)),
+        view(image),
+        work(view, scene, options, kept->count_for(options), kept->setups, kept->devices) {}
+
+  const std::shared_ptr<SetupCache> kept;
+  const Scene scene;
+  const RenderOptions options;
+  Image image;
+  const ImageView view;
+  FrameWork work;
+  bool is_done = false;
+};
+
+SteppedFrame::SteppedFrame(std::unique_ptr<Job> job) : job_(std::move(job)) {}
+SteppedFrame::SteppedFrame(SteppedFrame&&) noexcept = default;
+SteppedFrame& SteppedFrame::operator=(SteppedFrame&&) noexcept = default;
+SteppedFrame::~SteppedFrame() = default;
+
+bool SteppedFrame::advance(double seconds) {
+  if (!(seconds >= 0)) throw Error("seconds: must not be negative");
+  if (job_->is_done) return true;
+  const auto most = std::chrono::duration<double>(std::min(seconds, endless.count()));
+  return job_->is_done = job_->work.advance(most);
+}
+
+RenderResult SteppedFrame::take() {
+  if (!job_->is_done) throw Error("the frame is not done; advance() it until it is");
+  return {std::exchange(job_->image, {}), job_->work.report()};
+}
+
+SteppedFrame Renderer::begin(Scene scene, RenderOptions options) {
+  check_frame(scene, options);
+  return SteppedFrame(
+      std::make_unique<SteppedFrame::Job>(kept_, std::move(scene), std::move(options)));
 }
 
 RunningFrame Renderer::start(Scene scene, RenderOptions options) {
