@@ -66,6 +66,83 @@ TEST_F(WriteVolume, RawIsTheValuesAndItsNoteReadsItBack) {
   EXPECT_EQ(write_all(awkward_volumes<float>(1, description), "b.raw").size(), 1u);
 }
 
+template <class Value>
+void expect_npz_reads_back(const std::filesystem::path& file) {
+  const Volume::Description description = awkward_description();
+  const std::vector<Volume> volumes = awkward_volumes<Value>(1, description);
+  EXPECT_TRUE(write_volume(volumes, file, "density").empty());
+  ReadOptions options;
+  options.array = "density";
+  const Volume read = read_volume(file, options);
+  expect_same_bits<Value>(read, volumes.front());
+  expect_same_place(read, volumes.front(), 1e-12);
+}
+
+TEST_F(WriteVolume, NpzReadsBackInEveryType) {
+  expect_npz_reads_back<std::uint8_t>(path("a.npz"));
+  expect_npz_reads_back<std::int8_t>(path("b.npz"));
+  expect_npz_reads_back<std::uint16_t>(path("c.npz"));
+  expect_npz_reads_back<std::int16_t>(path("d.npz"));
+  expect_npz_reads_back<std::uint32_t>(path("e.npz"));
+  expect_npz_reads_back<std::int32_t>(path("f.npz"));
+  expect_npz_reads_back<float>(path("g.npz"));
+  expect_npz_reads_back<double>(path("h.npz"));
+}
+
+TEST_F(WriteVolume, NpzHasComponentsAndSaysWhatItDoesNotHold) {
+  const Volume::Description cells = awkward_description(Centering::cell);
+  const std::vector<Volume> volumes = awkward_volumes<float>(3, cells);
+  const std::vector<std::string> losses = write_all(volumes, "a.npz");
+  ASSERT_EQ(losses.size(), 1u);
+  EXPECT_TRUE(contains(losses[0], "--centering cell"));
+  ReadOptions options;
+  options.array = "density";
+  options.centering = Centering::cell;
+  const std::vector<Volume> read = read_components(path("a.npz"), options);
+  ASSERT_EQ(read.size(), 3u);
+  for (std::size_t c = 0; c < 3; ++c) {
+    expect_same_bits<float>(read[c], volumes[c]);
+    expect_same_place(read[c], volumes[c], 1e-12);
+  }
+}
+
+TEST_F(WriteVolume, NpzKeepsPositionsAlongTheAxes) {
+  Volume::Description description = awkward_description();
+  description.placement.direction = {};
+  description.placement.origin = {0.5, -1, 2};
+  description.coordinates[0] = {0, 0.5, 2, 3, 7};
+  const std::vector<Volume> volumes = awkward_volumes<float>(1, description);
+  EXPECT_TRUE(write_all(volumes, "a.npz").empty());
+  ReadOptions options;
+  options.array = "density";
+  const Volume read = read_volume(path("a.npz"), options);
+  expect_same_bits<float>(read, volumes.front());
+  const auto ours = volumes.front().world_corners(), theirs = read.world_corners();
+  for (std::size_t i = 0; i < 8; ++i) test::expect_near(theirs[i], ours[i], 1e-12);
+  const auto refused = [&](const Volume::Description& wrong) {
+    return error_of([&] { write_all(awkward_volumes<float>(1, wrong), "b.npz"); });
+  };
+  Volume::Description turned = description;
+  turned.placement.direction = test::oblique();
+  EXPECT_TRUE(contains(refused(turned), "turned"));
+  Volume::Description cells = description;
+  cells.centering = Centering::cell;
+  cells.coordinates[0].push_back(8.5);
+  EXPECT_TRUE(contains(refused(cells), "cells of several sizes"));
+}
+
+TEST_F(WriteVolume, NpzNamesItsArrayApartFromThoseThatPlaceIt) {
+  for (const char* name : {"affine", "x", "space"}) {
+    const std::vector<Volume> volumes = awkward_volumes<float>(1, awkward_description());
+    const auto losses = write_volume(volumes, path("a.npz"), name);
+    ASSERT_EQ(losses.size(), 1u);
+    EXPECT_TRUE(contains(losses[0], std::string(name) + "_values"));
+    ReadOptions options;
+    options.array = std::string(name) + "_values";
+    expect_same_place(read_volume(path("a.npz"), options), volumes.front(), 1e-12);
+  }
+}
+
 TEST_F(WriteVolume, Refuses) {
   const std::vector<Volume> volumes = awkward_volumes<float>(1, awkward_description());
   EXPECT_TRUE(contains(error_of([&] { write_all(volumes, "a.png"); }), ".nrrd"));

@@ -14,6 +14,7 @@ pellucid_io_sources(
     numbered_files.cpp
     temporary_folder.cpp
     zip_archive.cpp
+    zip_writer.cpp
   LOOPS
     bzip2_inflater.cpp
     gzip_source.cpp

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 #include <optional>
 #include <span>
@@ -324,6 +325,25 @@ std::vector<VolumeData> read_permuted(const ByteSource& source, const ValueLayou
 }
 
 }  // namespace
+
+std::string npy_header(std::string_view type, const std::vector<std::size_t>& shape,
+                       bool fortran_order) {
+  std::string sides;
+  for (const std::size_t side : shape) sides += std::to_string(side) + ",";
+  const bool is_byte = type.substr(1) == "8";
+  const char order = is_byte ? '|' : std::endian::native == std::endian::little ? '<' : '>';
+  std::string text = std::string("{'descr': '") + order + type.front() +
+                     std::to_string(std::stoi(std::string(type.substr(1))) / 8) +
+                     "', 'fortran_order': " + (fortran_order ? "True" : "False") + ", 'shape': (" +
+                     sides + "), }";
+  constexpr std::size_t preamble = 10, alignment = 64;
+  while ((preamble + text.size() + 1) % alignment != 0) text += ' ';
+  text += '\n';
+  std::string header("\x93NUMPY\x01\x00", 8);
+  header += static_cast<char>(text.size() & 0xff);
+  header += static_cast<char>(text.size() >> 8);
+  return header + text;
+}
 
 NpyArray read_npy_header(const ByteSource& source) {
   const auto truncated = [&] { return Error(source.name + ": the .npy header is cut off"); };

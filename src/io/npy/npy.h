@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "volumes/components.h"
@@ -20,6 +22,12 @@ struct NpyArray {
   bool fortran_order = false;
   std::vector<std::int64_t> shape;
 };
+
+/// Returns the preamble and the header of an array of this type ("u8" … "f64") in this machine's
+/// byte order, the last axis fastest or, in Fortran's order, the first: NumPy's format 1.0, of a
+/// multiple of 64 bytes.
+std::string npy_header(std::string_view type, const std::vector<std::size_t>& shape,
+                       bool fortran_order = false);
 
 /// Throws Error, also for types that are not read.
 NpyArray read_npy_header(const ByteSource& source);

@@ -19,6 +19,7 @@
 #include "pellucid/scene/error.h"
 #include "volumes/array_statistics.h"
 #include "volumes/volume_format.h"
+#include "write_npz.h"
 
 namespace pellucid {
 
@@ -158,12 +159,31 @@ const NpzArray& choose(const ByteSource& archive, const std::vector<NpzArray>& a
   return *only;
 }
 
+/// Returns the name of the space of the world, where an array has its letters; else nothing.
+std::string space_of(const ByteSource& archive, const std::vector<NpzArray>& arrays) {
+  constexpr std::int64_t longest = 64;
+  const auto space = std::ranges::find(arrays, npz_space, &NpzArray::name);
+  if (space == arrays.end() || space->shape.size() != 1 || space->shape[0] > longest) return "";
+  std::string name;
+  try {
+    for (const double letter : read_npy_numbers(zip_entry_source(archive, space->entry))) {
+      if (!(letter >= ' ' && letter <= '~')) return "";
+      name += static_cast<char>(letter);
+    }
+  } catch (const Error&) {
+    return "";
+  }
+  return name;
+}
+
 VolumeFile open_npz(const ByteSource& source, const ReadOptions& options) {
   refuse_raw_options(options, source.name);
   std::vector<NpzArray> arrays = arrays_of(source);
   read_shapes(source, arrays);
   const NpzArray& chosen = choose(source, arrays, options);
-  return open_array(source, chosen, options, arrays_beside(source, arrays, chosen));
+  VolumeFile file = open_array(source, chosen, options, arrays_beside(source, arrays, chosen));
+  file.space = space_of(source, arrays);
+  return file;
 }
 
 std::vector<VolumeArray> list_npz_arrays(const std::filesystem::path& path,

@@ -18,8 +18,9 @@ using Sink = std::function<void(std::span<const std::byte>)>;
 /// Volume to write: components on one grid, of one type.
 struct WrittenVolume {
   std::span<const Volume> components;
-  std::string array;  ///< its name
-  std::string path;   ///< for messages
+  std::string array;    ///< its name
+  std::string path;     ///< for messages
+  std::string space{};  ///< that it is placed in (world_space()); empty: not known
 
   const Volume::Description& description() const { return components.front().description(); }
   const VolumeData& data() const { return components.front().data(); }
@@ -35,7 +36,8 @@ struct VolumeWriter {
   std::string_view extension;  ///< the end of files' names, in small letters: ".nii.gz"
   /// Writes a volume to `sink`. Returns what the format does not hold. Throws Error.
   Losses (*write)(const WrittenVolume& volume, const Sink& sink);
-  bool compressed = false;  ///< whether gzip compresses what is written
+  bool compressed = false;       ///< whether gzip compresses what is written
+  bool keeps_positions = false;  ///< whether it holds rectilinear axes
 };
 
 /// Returns all of them. CMake writes the source, from what the folders name.

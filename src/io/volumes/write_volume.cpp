@@ -25,14 +25,14 @@ const VolumeWriter* writer_of(const std::filesystem::path& path) {
   return writer == writers.end() ? nullptr : *writer;
 }
 
-void check(const WrittenVolume& volume) {
+void check(const WrittenVolume& volume, bool keeps_positions) {
   if (volume.components.empty()) throw Error(volume.path + ": not written: there is no volume");
   const Volume::Description& first = volume.description();
   for (std::size_t a = 0; a < 3; ++a) {
-    if (first.coordinates[a].empty()) continue;
+    if (keeps_positions || first.coordinates[a].empty()) continue;
     throw Error(volume.path + ": not written: the values stand at positions of their own along " +
                 std::string(1, "xyz"[a]) +
-                ", which the format cannot hold; write tetrahedra, .vtu");
+                ", which the format cannot hold; write .npz, or tetrahedra, .vtu");
   }
   for (const Volume& component : volume.components) {
     const Volume::Description& d = component.description();
@@ -67,7 +67,7 @@ std::vector<std::string> write_volume(std::span<const Volume> components,
     throw Error(path.string() + ": not written: a volume is written as one of " +
                 writable_volume_extensions());
   }
-  check(volume);
+  check(volume, writer->keeps_positions);
   AtomicFile file(path);
   std::ofstream stream(file.temporary_path(), std::ios::binary);
   const Sink to_file = [&](std::span<const std::byte> bytes) {
