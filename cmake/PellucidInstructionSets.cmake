@@ -3,7 +3,9 @@ option(PELLUCID_SIMD
   "Packets of rays for SSE4.1, AVX2 and AVX-512, chosen at run time, or NEON (needs xsimd)" ON)
 
 set(_pellucid_processor other)
-if(CMAKE_SIZEOF_VOID_P EQUAL 8 AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+if(PELLUCID_WEB)
+  set(_pellucid_processor web)
+elseif(CMAKE_SIZEOF_VOID_P EQUAL 8 AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
     set(_pellucid_processor x86)
   elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
@@ -16,6 +18,8 @@ endif()
 set(PELLUCID_INSTRUCTION_SETS sse4 avx2 avx512)
 if(_pellucid_processor STREQUAL "arm")
   set(PELLUCID_INSTRUCTION_SETS neon64)
+elseif(_pellucid_processor STREQUAL "web")
+  set(PELLUCID_INSTRUCTION_SETS wasm128)
 endif()
 set(PELLUCID_BUILD_SETS "all" CACHE STRING
     "Instruction sets to build kernels for; native: the best of this machine; native+1: and one")
@@ -23,11 +27,13 @@ set(_pellucid_lanes_sse4 4)
 set(_pellucid_lanes_avx2 8)
 set(_pellucid_lanes_avx512 16)
 set(_pellucid_lanes_neon64 4)
+set(_pellucid_lanes_wasm128 4)
 set(_pellucid_flags_sse4 -msse4.1)
 set(_pellucid_flags_avx2 -mavx2 -mfma)
 set(_pellucid_flags_avx512 -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl -mfma
     -mprefer-vector-width=512)
 set(_pellucid_flags_neon64)  # every AArch64 processor has it
+set(_pellucid_flags_wasm128 -msimd128 -msse4.1)  # SSE's functions by WebAssembly's instructions
 
 set(PELLUCID_SIMD_FOUND FALSE)
 if(PELLUCID_SIMD AND NOT _pellucid_processor STREQUAL "other")
@@ -85,14 +91,14 @@ endforeach()
 # that return null.
 # In these sources
 #   PELLUCID_LANES             is 4, 8 or 16,
-#   PELLUCID_INSTRUCTION_SET   is sse4, avx2, avx512 or neon64,
+#   PELLUCID_INSTRUCTION_SET   is sse4, avx2, avx512, neon64 or wasm128,
 #   pellucid                   is a macro: the project's namespace gets another name in each, so
 #                              that an inline function compiled for AVX-512 is never the one that
 #                              the linker keeps for code that runs elsewhere.
 # What they give to others are functions declared extern "C" outside of that namespace, named by
 # PELLUCID_ENTRY (simd/instruction_set.h), and plain structs; tests/architecture reads the objects'
 # symbols. TARGET's own sources see PELLUCID_HAS_PACKETS, 1 or 0: on other processors than x86-64
-# and AArch64, or without PELLUCID_SIMD, nothing is compiled.
+# and AArch64 and WebAssembly's, or without PELLUCID_SIMD, nothing is compiled.
 function(pellucid_instruction_sets target)
   cmake_parse_arguments(arg "" "ABSENT" "SOURCES;LATER;INSTEAD;ENTRIES;LIBRARIES" ${ARGN})
   set(sources ${arg_SOURCES})

@@ -26,6 +26,16 @@ target_compile_options(pellucid_build_flags INTERFACE
   $<$<AND:${_pellucid_gcc},$<VERSION_GREATER_EQUAL:${_pellucid_gxx},13>>:-Wno-dangling-reference>
   $<$<BOOL:${PELLUCID_WERROR}>:-Werror>)
 
+if(PELLUCID_WEB)
+  # What Emscripten's standard library lacks stands in front of it. Exceptions are WebAssembly's own
+  # (-fwasm-exceptions, also where it is linked). Of sizes that are 32 bits wide there is no end.
+  target_include_directories(pellucid_build_flags SYSTEM BEFORE INTERFACE
+    "${PROJECT_SOURCE_DIR}/cmake/web/include")
+  target_compile_options(pellucid_build_flags INTERFACE
+    -fwasm-exceptions -Wno-shorten-64-to-32 -Wno-unused-command-line-argument)
+  target_link_options(pellucid_build_flags INTERFACE -fwasm-exceptions)
+endif()
+
 option(PELLUCID_PRECOMPILE_HEADERS
        "Precompile what most sources of the libraries include" ${PROJECT_IS_TOP_LEVEL})
 
@@ -71,16 +81,23 @@ function(pellucid_header_module name)
   _pellucid_declare(${name} INTERFACE "${arg_DEPENDS}")
 endfunction()
 
-# pellucid_first_sources(RESULT TARGET SOURCES file... [LATER file...] [INSTEAD file...]): the files
-# of a target. LATER: those that no first picture needs; with PELLUCID_FIRST_PICTURE the files
-# INSTEAD stand in for them. Both builds compile SOURCES alike, so that the whole one takes over
-# their objects. tests/first_picture links what is left without LATER, which is kept in global
-# properties:
+# pellucid_first_sources(RESULT TARGET SOURCES file... [LATER file...] [INSTEAD file...]
+#                        [NOT_WEB file...] [WEB file...]): the files of a target. LATER: those that
+# no first picture needs; with PELLUCID_FIRST_PICTURE the files INSTEAD stand in for them. Both
+# builds compile SOURCES alike, so that the whole one takes over their objects. NOT_WEB: those of
+# SOURCES and LATER that WebAssembly does without, with the files WEB in their place.
+# tests/first_picture links what is left without LATER, which is kept in global properties:
 #   PELLUCID_FIRST_TARGETS      the targets
 #   PELLUCID_LATER_<target>     as seen from the target's folder
 #   PELLUCID_INSTEAD            absolute paths
 function(pellucid_first_sources result target)
-  cmake_parse_arguments(arg "" "" "SOURCES;LATER;INSTEAD" ${ARGN})
+  cmake_parse_arguments(arg "" "" "SOURCES;LATER;INSTEAD;NOT_WEB;WEB" ${ARGN})
+  if(PELLUCID_WEB)
+    set(all ${arg_SOURCES} ${arg_LATER} ${arg_WEB})
+    list(REMOVE_ITEM all ${arg_NOT_WEB} "")
+    set(${result} ${all} PARENT_SCOPE)
+    return()
+  endif()
   if(PELLUCID_FIRST_PICTURE)
     set(${result} ${arg_SOURCES} ${arg_INSTEAD} PARENT_SCOPE)
   else()
@@ -97,29 +114,33 @@ function(pellucid_first_sources result target)
   endif()
 endfunction()
 
-# pellucid_add_sources(TARGET FOLDER [SOURCES file...] [LATER file...] [INSTEAD file...]): further
-# files of a target of this folder, which lie in its sub-folder FOLDER, as of
-# pellucid_first_sources().
+# pellucid_add_sources(TARGET FOLDER [SOURCES file...] [LATER file...] [INSTEAD file...]
+#                      [NOT_WEB file...] [WEB file...]): further files of a target of this folder,
+# which lie in its sub-folder FOLDER, as of pellucid_first_sources().
 function(pellucid_add_sources target folder)
-  cmake_parse_arguments(arg "" "" "SOURCES;LATER;INSTEAD" ${ARGN})
-  foreach(list IN ITEMS SOURCES LATER INSTEAD)
+  set(lists SOURCES LATER INSTEAD NOT_WEB WEB)
+  cmake_parse_arguments(arg "" "" "${lists}" ${ARGN})
+  set(arguments)
+  foreach(list IN LISTS lists)
     list(TRANSFORM arg_${list} PREPEND "${folder}/")
+    list(APPEND arguments ${list} ${arg_${list}})
   endforeach()
-  pellucid_first_sources(sources ${target}
-    SOURCES ${arg_SOURCES} LATER ${arg_LATER} INSTEAD ${arg_INSTEAD})
+  pellucid_first_sources(sources ${target} ${arguments})
   target_sources(${target} PRIVATE ${sources})
 endfunction()
 
-# pellucid_library(NAME [SOURCES file...] [LATER file...] [INSTEAD file...] [DEPENDS NAME...]
-# [PRIVATE target...] [LEVEL option]): the folders src/NAME and include/pellucid/NAME as the
-# compiled library pellucid::NAME, its files as of pellucid_first_sources(). It is static, so
-# whoever links it links its PRIVATE targets too (PellucidInstall); those that are headers alone
-# stand in $<BUILD_INTERFACE:...>. LEVEL is what GCC optimises it by in a release, where that is not
-# what the others have.
+# pellucid_library(NAME [SOURCES file...] [LATER file...] [INSTEAD file...] [NOT_WEB file...]
+# [WEB file...] [DEPENDS NAME...] [PRIVATE target...] [LEVEL option]): the folders src/NAME and
+# include/pellucid/NAME as the compiled library pellucid::NAME, its files as of
+# pellucid_first_sources(). It is static, so whoever links it links its PRIVATE targets too
+# (PellucidInstall); those that are headers alone stand in $<BUILD_INTERFACE:...>. LEVEL is what GCC
+# and Emscripten optimise it by in a release, where that is not what the others have.
 function(pellucid_library name)
-  cmake_parse_arguments(arg "" "LEVEL" "SOURCES;LATER;INSTEAD;DEPENDS;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "" "LEVEL"
+    "SOURCES;LATER;INSTEAD;NOT_WEB;WEB;DEPENDS;PRIVATE" ${ARGN})
   pellucid_first_sources(sources pellucid_${name}
-    SOURCES ${arg_SOURCES} LATER ${arg_LATER} INSTEAD ${arg_INSTEAD})
+    SOURCES ${arg_SOURCES} LATER ${arg_LATER} INSTEAD ${arg_INSTEAD}
+    NOT_WEB ${arg_NOT_WEB} WEB ${arg_WEB})
   add_library(pellucid_${name} STATIC ${sources})
   set_target_properties(pellucid_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
   _pellucid_declare(${name} PUBLIC "${arg_DEPENDS}")
@@ -131,8 +152,9 @@ function(pellucid_library name)
     pellucid_precompiled_headers(pellucid_${name})
   endif()
   if(arg_LEVEL)
+    set(takes_level $<OR:$<CXX_COMPILER_ID:GNU>,$<BOOL:${PELLUCID_WEB}>>)
     target_compile_options(pellucid_${name}
-      PRIVATE $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:${arg_LEVEL}>)
+      PRIVATE $<$<AND:$<CONFIG:Release>,${takes_level}>:${arg_LEVEL}>)
   endif()
 endfunction()
 

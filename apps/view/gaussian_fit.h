@@ -2,17 +2,17 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
-#include <stop_token>
 #include <string>
-#include <thread>
 
 #include "pellucid/io/scene_json.h"
+#include "pellucid/scene/suggest.h"
 
 namespace pellucid::view {
 
 /// Suggests Gaussians for a layer (suggest_gaussians()) on a thread of its own, which ends with
-/// this object.
+/// this object; in a page, which has none, before the constructor returns.
 class GaussianFit {
  public:
   /// The function, or why there is none; neither if it was cancelled.
@@ -27,12 +27,21 @@ class GaussianFit {
 
   GaussianFit(LayerDescription layer, Layer loaded, ParallelFor parallel, Progress progress,
               Done done);
+  ~GaussianFit();
+  GaussianFit(const GaussianFit&) = delete;
+  GaussianFit& operator=(const GaussianFit&) = delete;
 
   /// Makes it end soon. Safe to call from any thread.
-  void cancel() { thread_.request_stop(); }
+  void cancel();
 
  private:
-  std::jthread thread_;
+  struct Thread;
+  std::unique_ptr<Thread> thread_;
 };
+
+/// Returns the function or why there is none. `control` may throw FitCancelled.
+GaussianFit::Outcome fit_outcome(const LayerDescription& layer, const Layer& loaded,
+                                 const ParallelFor& parallel, const SuggestControl& control);
+struct FitCancelled {};
 
 }  // namespace pellucid::view

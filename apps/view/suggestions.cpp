@@ -2,11 +2,14 @@
 #include "suggestions.h"
 
 #include <algorithm>
+#include <exception>
 #include <memory>
+#include <new>
 #include <numeric>
 #include <string>
 #include <utility>
 
+#include "gaussian_fit.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid::view {
@@ -59,6 +62,19 @@ std::vector<std::optional<Layer>> suggest_missing_functions(
     layer.transfer_function = suggest_gaussians(layer, parallel, &*loaded[i], {true, {}});
   }
   return loaded;
+}
+
+GaussianFit::Outcome fit_outcome(const LayerDescription& layer, const Layer& loaded,
+                                 const ParallelFor& parallel, const SuggestControl& control) {
+  try {
+    return {suggest_gaussians(layer, parallel, &loaded, control), {}};
+  } catch (const FitCancelled&) {
+    return {};
+  } catch (const std::bad_alloc&) {
+    return {{}, "there is not enough memory to fit Gaussians"};
+  } catch (const std::exception& error) {
+    return {{}, error.what()};
+  }
 }
 
 }  // namespace pellucid::view

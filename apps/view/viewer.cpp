@@ -79,6 +79,7 @@ class Viewer {
                                      {"page", page},
                                      {"has_scene", studio_ != nullptr},
                                      {"can_open", static_cast<bool>(options_.open)},
+                                     {"can_list", static_cast<bool>(options_.open)},
                                      {"upload_bytes", options_.upload_bytes}}));
     if (studio_) studio_->page_opened(page, 0);
   }

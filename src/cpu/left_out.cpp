@@ -4,9 +4,6 @@
 // Light, surfaces and several variables take the general path, which is slower.
 #include "pellucid/scene/internal/left_out.h"
 
-#include "device/device_cache.h"
-#include "device/device_frame.h"
-#include "device/device_layer.h"
 #include "grid/grid_light.h"
 #include "grid/packet_surfaces.h"
 #include "layers/layer_stream.h"
@@ -108,24 +105,5 @@ std::vector<RayResult> ProjectedTracer::trace(const std::vector<RayPart>&, const
                                               std::vector<double>*) const {
   throw left_out("what projects layers");
 }
-
-DeviceLayer::DeviceLayer(const Layer&, const LayerSetting&, const ParallelFor&) {
-  throw left_out("what renders on devices");
-}
-
-std::string reason_for_cpu(const Frame&, const RenderOptions&) {
-  return "";
-}
-
-void render_on_device(const Frame&, const RenderOptions&, CachedDevice&, const ImageView&,
-                      RenderReport&) {
-  throw left_out("what renders on devices");
-}
-
-std::shared_ptr<CachedDevice> DeviceCache::find(Device) {
-  throw left_out("what renders on devices");
-}
-
-void DeviceCache::clear() {}
 
 }  // namespace pellucid

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import {isProgram, openSocket} from './end.js';
 
 /** Messages after which the picture stays as it is. */
 const asks = new Set(['probe', 'save', 'histogram', 'thumbnail', 'export', 'list_file',
@@ -7,7 +8,7 @@ const asks = new Set(['probe', 'save', 'histogram', 'thumbnail', 'export', 'list
 const longestPause = 15;
 
 /**
- * The WebSocket to the program that serves this page. Messages that come are events whose names are
+ * The way to the program that serves this page, or to its worker (end.js). Messages that come are events whose names are
  * their types: "scene", "frame", "histogram", "probe", "file", "notes", "progress", "error" and
  * others; and "lost" when the connection ends, "change" when something is sent that changes the
  * picture. `detail` is the message; of a binary one `detail.bytes` has its bytes. A lost connection
@@ -25,10 +26,7 @@ export class Connection extends EventTarget {
   }
 
   connect() {
-    const address = new URL('socket', location.href);
-    address.protocol = 'ws:';
-    this.socket = new WebSocket(address);
-    this.socket.binaryType = 'arraybuffer';
+    this.socket = openSocket();
     /** Numbers of messages: sent, the last that changes the picture, the last that is in it. */
     this.sent = this.changed = this.answered = 0;
     this.page = null;
@@ -36,8 +34,9 @@ export class Connection extends EventTarget {
       this.pause = 1;
       this.tell('open', {});
     });
-    this.socket.addEventListener('close', () => {
-      this.tell('lost', {});
+    this.socket.addEventListener('close', ({reason}) => {
+      this.tell('lost', {reason});
+      if (!isProgram) return;
       setTimeout(() => this.connect(), this.pause * 1000);
       this.pause = Math.min(2 * this.pause, longestPause);
     });

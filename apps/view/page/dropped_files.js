@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import {sendFile} from './end.js';
 
 /** Files that name the others that belong to them. */
 const headers = /\.(nhdr|mhd|hdr|ifo|dat|pvt[iprsu]|vtm|vvd|ivf|json)$/i;
@@ -49,17 +50,7 @@ export function mainFile(files) {
 export async function sendFiles(set, files, progress) {
   let before = 0;
   for (const {name, file} of files) {
-    const path = name.split('/').map(encodeURIComponent).join('/');
-    await new Promise((resolve, reject) => {
-      const request = new XMLHttpRequest();
-      request.open('PUT', `upload/${set}/${path}`);
-      request.upload.onprogress = (event) => progress(before + event.loaded);
-      request.onload = () => (request.status === 200
-        ? resolve() : reject(new Error(request.responseText || `upload: ${request.statusText}`)));
-      request.onerror = () =>
-        reject(new Error(`${name}: was not copied; is it readable, and the program running?`));
-      request.send(file);
-    });
+    await sendFile(set, name, file, (bytes) => progress(before + bytes));
     before += file.size;
   }
 }

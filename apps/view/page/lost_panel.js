@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {button, download, make} from './elements.js';
+import {isProgram} from './end.js';
 
 /** Says how to go on when the program does not answer any more, and saves what was edited. */
 export class LostPanel {
@@ -7,8 +8,19 @@ export class LostPanel {
   constructor(viewer) {
     this.viewer = viewer;
     this.element = document.getElementById('lost');
-    viewer.connection.on('lost', () => this.show());
+    viewer.connection.on('lost', ({reason}) => (isProgram ? this.show() : this.tell(reason)));
     viewer.connection.on('open', () => { this.element.hidden = true; });
+  }
+
+  /** Says why the page's own renderer ended. @param {string} reason */
+  tell(reason) {
+    const {viewer} = this;
+    const actions = viewer.scene === null ? [] : [make('p', {class: 'row'},
+      ...(viewer.savable ? [button('Save scene.json', () => this.save())] : []),
+      button('Start again', () => viewer.connection.connect()),
+      ' from the scene that the page came with.')];
+    this.element.replaceChildren(make('strong', {}, reason), ...actions);
+    this.element.hidden = false;
   }
 
   show() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {button, labelledAfter, make, replaceKeepingFocus} from './elements.js';
 import {droppedFiles, mainFile, sendFiles} from './dropped_files.js';
+import {isProgram} from './end.js';
 
 const examples = ['sphere', 'shells', 'hydrogen', 'marschner_lobb'];
 
@@ -47,8 +48,9 @@ export class OpenPanel {
     this.addDrop();
   }
 
-  begin({has_scene: hasScene, can_open: canOpen, upload_bytes: bytes}) {
+  begin({has_scene: hasScene, can_open: canOpen, can_list: canList, upload_bytes: bytes}) {
     this.canOpen = canOpen;
+    this.canList = canList;
     this.mostBytes = bytes;
     this.button.hidden = !canOpen;
     document.body.dataset.scene = hasScene ? 'shown' : 'none';
@@ -58,7 +60,9 @@ export class OpenPanel {
   show() {
     this.element.hidden = false;
     this.button.setAttribute('aria-pressed', 'true');
-    this.viewer.connection.send({type: 'list_folder', folder: this.folder?.path ?? ''});
+    if (this.canList) {
+      this.viewer.connection.send({type: 'list_folder', folder: this.folder?.path ?? ''});
+    }
     this.draw();
     this.element.querySelector('input, button')?.focus({preventScroll: true});
   }
@@ -92,13 +96,17 @@ export class OpenPanel {
       make('h2', {}, 'Open a volume, a mesh or a scene'),
       make('p', {class: 'drop'}, 'Drop a file, files that belong together, or a folder here, or ',
         button('choose files…', () => files.click()), files,
-        make('span', {class: 'hint'}, ` They are copied, up to ${sizeText(this.mostBytes)}, to a ` +
-          'temporary folder that goes with the program.')),
+        make('span', {class: 'hint'}, isProgram
+          ? ` They are copied, up to ${sizeText(this.mostBytes)}, to a ` +
+            'temporary folder that goes with the program.'
+          : ` They stay in this page, up to ${sizeText(this.mostBytes)}: nothing is sent ` +
+            'anywhere. It reads NIfTI, NumPy, MRC, DICOM that is not compressed, and raw scenes.')),
       make('p', {class: 'progress', role: 'status'}, this.progress),
-      make('h3', {}, 'From the folders of the machine that the program runs on'),
-      make('div', {class: 'row'}, path,
-        button('Open', () => { if (path.value) this.open(path.value); })),
-      ...this.folderParts(),
+      ...(this.canList ? [
+        make('h3', {}, 'From the folders of the machine that the program runs on'),
+        make('div', {class: 'row'}, path,
+          button('Open', () => { if (path.value) this.open(path.value); })),
+        ...this.folderParts()] : []),
       make('div', {class: 'row'}, 'Or an example: ',
         ...examples.map((name) => button(name.replace('_', '–'),
           () => this.open(`builtin:${name}`)))));
@@ -162,7 +170,8 @@ export class OpenPanel {
     const bytes = files.reduce((sum, {file}) => sum + file.size, 0);
     if (bytes > this.mostBytes) {
       this.viewer.showMessage(`${sizeText(bytes)} are more than the ${sizeText(this.mostBytes)} ` +
-        'that are copied. Choose the file from the folders of the machine instead.');
+        `that are copied. ${isProgram
+          ? 'Choose the file from the folders of the machine instead.' : 'Take the program.'}`);
       return;
     }
     const set = Math.floor(Math.random() * 2 ** 30);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import {button, download, labelledAfter, make} from './elements.js';
+import {embeddedFiles, isProgram} from './end.js';
 import {labelledPicture} from './labelled_picture.js';
+import {sizeText} from './open_panel.js';
 
 const commandLine = 'pellucid render scene.json -o picture.png';
 const pythonLines = `import pellucid
@@ -18,14 +20,22 @@ export class SavePanel {
     const withMarks = make('input', {type: 'checkbox'});
     const withBar = make('input', {type: 'checkbox'});
     const savePicture = () => save(withBar.checked ? 'png_with_color_bar' : 'png')();
+    // A page has neither OpenEXR nor what draws color bars.
+    const ofProgram = (...parts) => (isProgram ? parts : []);
+    const data = embeddedFiles().filter(({name}) => name !== 'scene.json');
     document.querySelector('#save-panel .content').append(
       make('div', {class: 'row'}, button('Picture, PNG', savePicture),
-        button('Numbers, EXR', save('exr')), button('Scene, JSON', save('scene'))),
+        ...ofProgram(button('Numbers, EXR', save('exr'))), button('Scene, JSON', save('scene')),
+        ...data.map(({name, size, bytes}) => button(`Data, ${name} (${sizeText(size)})`,
+          () => download(new Blob([bytes()], {type: 'application/zip'}), name)))),
       make('div', {class: 'row'}, labelledAfter(withMarks, 'Axes and scale bar in the PNG'),
-        labelledAfter(withBar, 'Color bar in the PNG')),
-      make('p', {class: 'hint'},
-        'The picture is saved exact, at the size of the window. The EXR has depth and error too.'),
-      make('p', {class: 'hint'}, 'With scene.json, the same picture to the bit from a terminal:'),
+        ...ofProgram(labelledAfter(withBar, 'Color bar in the PNG'))),
+      make('p', {class: 'hint'}, 'The picture is saved exact, at the size of the window.',
+        ...ofProgram(' The EXR has depth and error too.')),
+      make('p', {class: 'hint'}, isProgram
+        ? 'With scene.json, the same picture to the bit from a terminal:'
+        : 'With scene.json and the data beside it, the same picture from a terminal, ' +
+          'within the tolerance (the data are archives of NumPy):'),
       make('pre', {}, commandLine), copy(commandLine, 'the command'),
       make('p', {class: 'hint'}, 'and from Python:'),
       make('pre', {}, pythonLines), copy(pythonLines, 'the lines of Python'));

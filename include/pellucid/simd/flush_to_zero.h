@@ -12,8 +12,8 @@ namespace pellucid {
 /// is nothing. Numbers that are given as denormal are taken as they are.
 ///
 /// On AArch64 it does nothing: the flag there would also take denormal numbers that are given for
-/// 0.
-#if PELLUCID_HAS_NEON64
+/// 0. WebAssembly has no such flag.
+#if PELLUCID_HAS_NEON64 || defined(__wasm__)
 class [[maybe_unused]] FlushToZero {
  public:
   static constexpr bool flushes = false;

@@ -9,13 +9,15 @@
 /// which of them may run on this machine.
 namespace pellucid {
 
-/// Instruction sets of x86-64, the fastest last, and that of AArch64.
-enum class InstructionSet { scalar, sse4, avx2, avx512, neon64 };
+/// Instruction sets of x86-64, the fastest last, that of AArch64 and that of WebAssembly.
+enum class InstructionSet { scalar, sse4, avx2, avx512, neon64, wasm128 };
 
 /// The sets of this kind of processor, the fastest last: PELLUCID_EACH_SET(f) is f(sse4) f(avx2)
-/// f(avx512) or f(neon64).
+/// f(avx512), f(neon64) or f(wasm128).
 #if defined(__aarch64__)
 #define PELLUCID_EACH_SET(f) f(neon64)
+#elif defined(__wasm__)
+#define PELLUCID_EACH_SET(f) f(wasm128)
 #else
 #define PELLUCID_EACH_SET(f) f(sse4) f(avx2) f(avx512)
 #endif
@@ -49,11 +51,12 @@ constexpr int lanes_of(InstructionSet set) noexcept {
 }
 
 constexpr const char* name_of(InstructionSet set) noexcept {
-  return set == InstructionSet::avx512   ? "avx512"
-         : set == InstructionSet::avx2   ? "avx2"
-         : set == InstructionSet::sse4   ? "sse4"
-         : set == InstructionSet::neon64 ? "neon64"
-                                         : "scalar";
+  return set == InstructionSet::avx512    ? "avx512"
+         : set == InstructionSet::avx2    ? "avx2"
+         : set == InstructionSet::sse4    ? "sse4"
+         : set == InstructionSet::neon64  ? "neon64"
+         : set == InstructionSet::wasm128 ? "wasm128"
+                                          : "scalar";
 }
 
 /// Returns whether the processor has every instruction that the set's sources are compiled for, and
@@ -73,11 +76,14 @@ inline bool is_supported(InstructionSet set) noexcept {
              __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx2") &&
              __builtin_cpu_supports("fma");
     case InstructionSet::neon64:
+    case InstructionSet::wasm128:
       return false;
   }
   return false;
 #elif defined(__aarch64__)
   return set == InstructionSet::scalar || set == InstructionSet::neon64;
+#elif defined(__wasm__)
+  return set == InstructionSet::scalar || set == InstructionSet::wasm128;
 #else
   return set == InstructionSet::scalar;
 #endif
@@ -86,11 +92,14 @@ inline bool is_supported(InstructionSet set) noexcept {
 }  // namespace pellucid
 
 /// PELLUCID_DECLARE_ENTRIES(type, f, (arguments)) declares the functions of all sets, f_sse4 to
-/// f_avx512 or f_neon64: to be written within extern "C" outside of namespace pellucid.
-/// PELLUCID_ENTRIES(f) lists them as packet_sets lists the sets.
+/// f_avx512, or f_neon64, or f_wasm128: to be written within extern "C" outside of namespace
+/// pellucid. PELLUCID_ENTRIES(f) lists them as packet_sets lists the sets.
 #if defined(__aarch64__)
 #define PELLUCID_ENTRIES(name) name##_neon64
 #define PELLUCID_DECLARE_ENTRIES(type, name, arguments) type name##_neon64 arguments
+#elif defined(__wasm__)
+#define PELLUCID_ENTRIES(name) name##_wasm128
+#define PELLUCID_DECLARE_ENTRIES(type, name, arguments) type name##_wasm128 arguments
 #else
 #define PELLUCID_ENTRIES(name) name##_sse4, name##_avx2, name##_avx512
 #define PELLUCID_DECLARE_ENTRIES(type, name, arguments) \
@@ -99,8 +108,8 @@ inline bool is_supported(InstructionSet set) noexcept {
   type name##_avx512 arguments
 #endif
 
-/// In a source that is compiled once per set: PELLUCID_ENTRY(f) is f_sse4, f_avx2, f_avx512 or
-/// f_neon64.
+/// In a source that is compiled once per set: PELLUCID_ENTRY(f) is f_sse4, f_avx2, f_avx512,
+/// f_neon64 or f_wasm128.
 #if defined(PELLUCID_INSTRUCTION_SET)
 #define PELLUCID_PASTE_NAMES(a, b) a##_##b
 #define PELLUCID_PASTE(a, b) PELLUCID_PASTE_NAMES(a, b)

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 #include "pellucid/scene/error.h"
 #include "text/readable_number.h"

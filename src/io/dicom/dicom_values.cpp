@@ -70,7 +70,7 @@ class FrameReader {
                               image.transfer_syntax +
                               "); decompress the file with another program, or get it again"}});
       }
-      return {pixels_.get() + from, bytes};
+      return {pixels_.get() + from, static_cast<std::size_t>(bytes)};
     }
     const ByteSource source = file_source(image.file);
     const std::uintmax_t end = from + bytes;

@@ -19,7 +19,11 @@ pellucid_io_sources(
     bzip2_inflater.cpp
     gzip_source.cpp
     gzip_writer.cpp
-    zlib_inflater.cpp)
+    zlib_inflater.cpp
+  NOT_WEB
+    memory_limit.cpp
+  WEB
+    heap_limit.cpp)
 
 find_package(BZip2)
 if(BZip2_FOUND)

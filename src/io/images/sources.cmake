@@ -11,7 +11,13 @@ pellucid_io_sources(
   LOOPS
     display_bytes.cpp
     exr_file.cpp
-    png_file.cpp)
+    png_file.cpp
+  NOT_WEB
+    exr_file.cpp
+    png_file.cpp
+  WEB
+    no_exr_file.cpp
+    png_by_zlib.cpp)
 
 # Text over pictures.
 if(PELLUCID_WITH_CAIRO)

@@ -2,7 +2,12 @@
 pellucid_io_sources(
   LATER
     contained.cpp
-    module.cpp)
+    module.cpp
+  NOT_WEB
+    contained.cpp
+    module.cpp
+  WEB
+    no_module.cpp)
 
 file(RELATIVE_PATH modules_from_program
   "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}/pellucid")

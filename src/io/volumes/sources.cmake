@@ -11,6 +11,8 @@ pellucid_io_sources(
     unread_formats.cpp
     volume_axes.cpp
     write_volume.cpp
+  WEB
+    left_out_formats.cpp
   LOOPS
     components.cpp
     stored_numbers.cpp

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The studio of a page in its worker, in the place of the program and its server: the same commands
+// come, and the same messages go (apps/web/page/worker.js).
+#include <emscripten/em_js.h>
+#include <emscripten/emscripten.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <new>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "pellucid/cpu/threads.h"
+#include "pellucid/scene/error.h"
+#include "view/command.h"
+#include "view/server/page_messages.h"
+#include "view/studio.h"
+#include "view/view_input.h"
+
+EM_JS(void, pellucid_post_text, (const char* bytes, std::size_t size),
+      { postMessage(UTF8ToString(bytes, size)); });
+EM_JS(void, pellucid_post_bytes, (const char* bytes, std::size_t size), {
+  const copy = HEAPU8.slice(bytes, bytes + size).buffer;
+  postMessage(copy, [copy]);
+});
+
+namespace pellucid::view {
+
+namespace {
+
+/// The only page that there is.
+constexpr PageId page = 1;
+/// Where a page's files are (apps/web/page/worker.js).
+constexpr const char* folder_of_scene = "/scene";
+constexpr const char* folder_of_uploads = "/uploads";
+/// Bytes of files for which a heap of 2 GiB has room, beside what is made of them.
+constexpr std::uint64_t most_upload_bytes = std::uint64_t{1} << 29;
+
+class WorkerViewer {
+ public:
+  /// Tells the page what there is: the scene that it came with, or nothing yet.
+  void start(const std::string& input) {
+    send(text_message({{"type", "start"},
+                       {"page", page},
+                       {"has_scene", !input.empty()},
+                       {"can_open", true},
+                       {"can_list", false},
+                       {"upload_bytes", most_upload_bytes}}));
+    if (!input.empty()) try_to([&] { show(input, folder_of_scene); });
+  }
+
+  void receive(std::string_view message) {
+    ++number_;
+    bool is_for_studio = false;
+    try_to([&] {
+      Command command = parse_command(message);
+      if (open(command)) return;
+      is_for_studio = studio_ != nullptr;
+      if (is_for_studio) studio_->receive(page, std::move(command), message.size(), number_);
+    });
+    if (!is_for_studio && studio_) studio_->skip(page, number_);
+  }
+
+  /// Returns whether there is more to do.
+  bool advance(double seconds) { return studio_ && studio_->advance(seconds); }
+
+ private:
+  static void send(const PageMessage& message) {
+    const std::string& bytes = *message.bytes;
+    if (message.kind == PageMessage::Kind::text) {
+      pellucid_post_text(bytes.data(), bytes.size());
+    } else {
+      pellucid_post_bytes(bytes.data(), bytes.size());
+    }
+  }
+
+  template <class Work>
+  void try_to(const Work& work) {
+    try {
+      work();
+    } catch (const std::bad_alloc&) {
+      send(error_message("there is not enough memory for this in a page; take the program"));
+    } catch (const std::exception& error) {
+      send(error_message(error.what()));
+    }
+  }
+
+  /// Returns false if the command is for the studio.
+  bool open(const Command& command) {
+    if (std::holds_alternative<ListFolder>(command)) return true;  // a page has no folders
+    if (const auto* const file = std::get_if<OpenFile>(&command)) {
+      replace(file->input, file->input, "");
+      return true;
+    }
+    const auto* const upload = std::get_if<OpenUpload>(&command);
+    if (upload == nullptr) return false;
+    const std::filesystem::path folder =
+        std::filesystem::path(folder_of_uploads) / std::to_string(upload->set);
+    replace((folder / upload->name).string(), upload->name.empty() ? "the files" : upload->name,
+            folder);
+    return true;
+  }
+
+  void replace(const std::string& input, const std::string& name,
+               const std::filesystem::path& folder) {
+    send(text_message({{"type", "opening"}, {"name", name}}));
+    try {
+      ViewedScene scene = view_input(input, parallel_for(1));
+      studio_.reset();
+      send(text_message({{"type", "opened"}, {"name", name}}));
+      show(std::move(scene), folder);
+      keep_uploads(folder);
+    } catch (...) {
+      send(text_message({{"type", "opening"}, {"name", nullptr}}));
+      std::error_code ignored;
+      if (!folder.empty()) std::filesystem::remove_all(folder, ignored);
+      throw;
+    }
+  }
+
+  /// Removes the files of all other sets, which take memory.
+  static void keep_uploads(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    std::vector<std::filesystem::path> others;
+    for (const auto& set : std::filesystem::directory_iterator(folder_of_uploads, ignored)) {
+      if (set.path() != folder) others.push_back(set.path());
+    }
+    for (const std::filesystem::path& other : others) {
+      std::filesystem::remove_all(other, ignored);
+    }
+  }
+
+  void show(const std::string& input, const std::filesystem::path& folder) {
+    show(view_input(input, parallel_for(1)), folder);
+  }
+
+  /// `folder`: where its files are, which a saved scene names by themselves.
+  void show(ViewedScene scene, const std::filesystem::path& folder) {
+    SceneState state(std::move(scene.description), std::move(scene.scene), parallel_for(1));
+    if (!folder.empty()) state.set_temporary_folder(folder);
+    studio_ = std::make_unique<Studio>(
+        std::move(state), scene.keeps_camera, 1, SceneChanged{},
+        [](std::optional<PageId>, const PageMessage& message) { send(message); },
+        std::vector<std::size_t>{}, Studio::Worker::caller);  // a better fit would hold up the page
+    studio_->page_opened(page, number_);
+  }
+
+  std::uint64_t number_ = 0;  ///< of messages of the page
+  std::unique_ptr<Studio> studio_;
+};
+
+WorkerViewer& viewer() {
+  static WorkerViewer one;
+  return one;
+}
+
+}  // namespace
+
+}  // namespace pellucid::view
+
+extern "C" {
+
+/// Begins with a scene of the page's files, or with none where `input` is empty.
+EMSCRIPTEN_KEEPALIVE void pellucid_start(const char* input) {
+  pellucid::view::viewer().start(input);
+}
+
+/// Takes a message of the page.
+EMSCRIPTEN_KEEPALIVE void pellucid_receive(const char* bytes, std::size_t size) {
+  pellucid::view::viewer().receive({bytes, size});
+}
+
+/// Works for some seconds. Returns 1 while there is more to do.
+EMSCRIPTEN_KEEPALIVE int pellucid_advance(double seconds) {
+  return pellucid::view::viewer().advance(seconds) ? 1 : 0;
+}
+}
