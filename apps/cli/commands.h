@@ -22,6 +22,7 @@ Command add_compare(CommandLine& app);
 Command add_histogram(CommandLine& app);
 Command add_suggest(CommandLine& app);
 Command add_convert(CommandLine& app);
+Command add_export(CommandLine& app);
 Command add_presets(CommandLine& app);
 Command add_transfer_function(CommandLine& app);
 

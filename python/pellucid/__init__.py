@@ -34,7 +34,7 @@ from ._render import look, render, scene_of
 from .scene import (Camera, Clip, ClipBox, ClipCylinder, ClipPlane, ClipSphere, DirectionalLight,
                     Gaussian, HeadLight, Integration, Isosurface, Layer, Light, PointLight, Scene,
                     Shading, Slice)
-from ._view import Viewer, view
+from ._view import Viewer, export, view
 from .segments import integrate
 
 __all__ = [
@@ -45,7 +45,7 @@ __all__ = [
     "Preset", "Renderer", "Scene", "Shading", "Slice", "TransferFunction", "Viewer", "Volume",
     "__version__",
     "builtin_field", "color_map", "color_map_names", "default_camera",
-    "default_transfer_function", "dicom_series",
+    "default_transfer_function", "dicom_series", "export",
     "export_transfer_function", "from_colormap", "histogram", "import_transfer_function",
     "integrate", "label_count", "linear_to_srgb", "load_scene", "look", "looks",
     "make_preset", "mesh_of", "presets",

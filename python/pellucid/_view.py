@@ -4,32 +4,67 @@ from __future__ import annotations
 
 import atexit
 import copy
+import html
+import json
 import os
+import pathlib
 import sys
 import weakref
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
-from ._pellucid import Error, ViewerServer
+from ._pellucid import Error, ViewerServer, page_of_scene
 from ._render import scene_of
 from .scene import Scene
 
 # Notebooks are served to a browser of this machine from any port.
 _NOTEBOOKS = "http://localhost:* http://127.0.0.1:*"
 _running: "weakref.WeakSet[Viewer]" = weakref.WeakSet()
+# Bytes of data, compressed, that a notebook takes unless it is told to.
+_MOST_EMBEDDED = 16_000_000
+# In a frame: the server where the notebook is of this machine and its page answers, else the page
+# itself, which needs none.
+_FRAME = """<!doctype html><meta charset="utf-8"><style>body {{margin: 0}}
+iframe {{position: fixed; width: 100%; height: 100%; border: 0}}</style>
+<textarea hidden>{page}</textarea><script>
+const embedded = document.querySelector("textarea").value;
+const live = document.createElement("iframe");
+const show = () => {{
+  removeEventListener("message", answer);
+  document.open();
+  document.write(embedded);
+  document.close();
+}};
+const timer = setTimeout(show, 3000);
+const answer = ({{source, data}}) => {{
+  if (source === live.contentWindow && data === "pellucid") clearTimeout(timer);
+}};
+if (/^http:\\/\\/(localhost|127\\.0\\.0\\.1)(:|$)/.test(self.origin)) {{
+  addEventListener("message", answer);
+  live.referrerPolicy = "no-referrer";
+  live.src = {address};
+  document.body.append(live);
+}} else {{
+  clearTimeout(timer);
+  show();
+}}
+</script>"""
 
 
 class Viewer:
     """A scene that is turned and edited in a page, on this machine alone; view() makes it.
 
     In a notebook it shows itself as a frame. Letting go of it, stop() and the end of the program
-    end its page. It can be used in a `with` statement.
+    end its page. It can be used in a `with` statement. What a notebook keeps of it shows the scene
+    as it was then, without this program.
     """
 
-    def __init__(self, scene: Scene, port: int = 0, threads: int = 0, height: int = 600) -> None:
+    def __init__(self, scene: Scene, port: int = 0, threads: int = 0, height: int = 600,
+                 embed: Optional[bool] = None) -> None:
         if not 50 <= height <= 10000:
             raise Error(f"height: expected 50 to 10000 pixels, got {height!r:.60}")
         self._given = [copy.copy(layer) for layer in scene.layers]
         self._height = int(height)
+        self._embed = embed
         self._server = ViewerServer(scene, port, threads, _NOTEBOOKS)
         self._file: Optional[str] = None
         self._process = os.getpid()
@@ -98,10 +133,31 @@ class Viewer:
         if hasattr(self, "_server"):
             self.stop()
 
+    def _page(self) -> Optional[bytes]:
+        """A page that holds the scene as it is now; None: it is not to be, or cannot."""
+        if self._embed is False:
+            return None
+        try:
+            if self._embed:
+                return page_of_scene(self.scene)
+            return page_of_scene(self.scene, _MOST_EMBEDDED)
+        except Error:
+            if self._embed:
+                raise
+            return None
+
     def _repr_html_(self) -> str:
-        if not self.running:
+        page = self._page()
+        if page is None and not self.running:
             return "<p>This viewer was stopped.</p>"
-        return (f'<iframe src="{self.address}" title="Pellucid" '
+        if page is None:
+            source = f'src="{self.address}"'
+        else:
+            # No server has the reserved port 0.
+            address = json.dumps(self.address if self.running else "http://127.0.0.1:0/")
+            frame = _FRAME.format(page=html.escape(page.decode(), quote=False), address=address)
+            source = f'srcdoc="{html.escape(frame)}"'
+        return (f'<iframe {source} title="Pellucid" '
                 f'style="width: 100%; height: {self._height}px; border: 0" '
                 'referrerpolicy="no-referrer"></iframe>')
 
@@ -110,7 +166,7 @@ class Viewer:
 
 
 def view(data: Any, transfer_function: Any = None, *, open: Optional[bool] = None, port: int = 0,
-         threads: int = 0, height: int = 600, **how: Any) -> Viewer:
+         threads: int = 0, height: int = 600, embed: Optional[bool] = None, **how: Any) -> Viewer:
     """Shows data in a page where they are turned and edited, as `pellucid view` does.
 
     data, transfer_function, **how  as render() takes them, except depth, error, values, progress
@@ -119,6 +175,9 @@ def view(data: Any, transfer_function: Any = None, *, open: Optional[bool] = Non
     port      of the loopback interface; 0: any that is free
     threads   0: one per core
     height    of the frame in a notebook, in pixels
+    embed     whether a notebook keeps the data too, so that the frame turns where it is exported,
+              hosted or opened again, without this program; None: if the data have 16 MB at most
+              where they are compressed
 
     Returns a Viewer: in a notebook, the last value of a cell, it shows itself. A script calls its
     wait(). Its `scene` is what is seen, to be rendered or kept. The data are not copied, and a page
@@ -128,10 +187,35 @@ def view(data: Any, transfer_function: Any = None, *, open: Optional[bool] = Non
     if isinstance(how.get("tolerance"), str):
         raise Error(f"tolerance: expected a number, got {how['tolerance']!r:.60}; shares are for "
                     "render(), and the page has a slider")
-    viewer = Viewer(scene_of(data, transfer_function, **how), port, threads, height)
+    viewer = Viewer(scene_of(data, transfer_function, **how), port, threads, height, embed)
     if open or (open is None and "ipykernel" not in sys.modules):
         viewer.open()
     return viewer
+
+
+def export(data: Any, path: Union[str, "os.PathLike[str]"], transfer_function: Any = None,
+           **how: Any) -> None:
+    """Writes a page (.html) that shows data in any browser, exact, without this program, as
+    `pellucid export` does.
+
+    data, transfer_function, **how  as render() takes them, except depth, error, values, progress
+                                    and renderer; tolerance is a number
+    path                            of the page, whose name ends in .html
+
+    The page holds the values as they are. Raises Error as render() does, and for what a page cannot
+    hold: fields of one's own, a backdrop.
+    """
+    target = pathlib.Path(path)
+    if target.suffix.lower() != ".html":
+        raise Error(f"{target}: expected a name that ends in .html")
+    page = page_of_scene(scene_of(data, transfer_function, **how))
+    partial = target.with_name(target.name + ".part")
+    try:
+        partial.write_bytes(page)
+        partial.replace(target)
+    except OSError as error:
+        partial.unlink(missing_ok=True)
+        raise Error(f"{target}: cannot write: {error.strerror}") from None
 
 
 @atexit.register

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <condition_variable>
+#include <cstdint>
 #include <exception>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -9,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "pellucid/io/embed_scene.h"
 #include "scenes.h"
 #include "view/viewer.h"
 #include "waiting.h"
@@ -27,6 +30,20 @@ void name_arrays(PythonScene& made) {
       layer.name = volume->volume->description().name;
     }
   }
+}
+
+/// Returns a page that holds the scene.
+py::bytes page_of_scene(const py::object& object, std::uint64_t most_bytes) {
+  PythonScene made = complete_python_scene(object);
+  name_arrays(made);
+  SceneDescription description = described(made);
+  description.camera = made.scene.camera;
+  std::string page;
+  {
+    const ReleasedLock released;
+    page = page_of(embed_scene(description, made.scene, most_bytes));
+  }
+  return py::bytes(page);
 }
 
 /// Python's viewer of a scene: a server, and a thread that renders for its pages.
@@ -189,6 +206,10 @@ class ViewerHandle {
 }  // namespace
 
 void bind_viewers(py::module_& module) {
+  module.def("page_of_scene", page_of_scene, py::arg("scene"),
+             py::arg("most_bytes") = std::numeric_limits<std::uint64_t>::max(),
+             "The bytes of a page of HTML that holds the scene. Raises Error, also where its data "
+             "have more bytes.");
   py::class_<ViewerHandle>(module, "ViewerServer", "What pellucid.Viewer is made of.")
       .def(py::init<const py::object&, int, int, const std::string&>(), py::arg("scene"),
            py::arg("port"), py::arg("threads"), py::arg("frame_ancestors"))

@@ -43,6 +43,8 @@ struct RenderArguments {
        verbose = false;
   /// Several channels without a function get suggested Gaussians, in place of an error.
   bool suggests_functions = false;
+  /// Values of INPUT that are read; none: all.
+  std::optional<IndexBox> crop{};
   VolumeOptions volume;
   MeshOptions mesh;
 

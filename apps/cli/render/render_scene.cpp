@@ -441,6 +441,27 @@ void set_scene_tolerance(PreparedScene& prepared, double tolerance) {
   fit_opacity_tables(description, scene);
 }
 
+namespace {
+
+/// Has the data of a layer read in part. Throws UsageError, also later where the part is outside.
+void set_crop(const IndexBox& box, LayerDescription& layer) {
+  if (layer.mesh) throw UsageError("--crop: is of grids; a mesh is not cut");
+  visit_sources(layer, [&](FieldSource& field) {
+    if (!field.builtin.empty()) throw UsageError("--crop: is of files, not of a built-in field");
+    field.options.part = [box](const Volume::Description& whole) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        if (box.first[a] + box.count[a] <= whole.dimensions[a]) continue;
+        throw UsageError(fmt::format("--crop: ends at {} along {}, but {} has {} values there",
+                                     box.first[a] + box.count[a], "xyz"[a], whole.name,
+                                     whole.dimensions[a]));
+      }
+      return box;
+    };
+  });
+}
+
+}  // namespace
+
 SceneRequest request_scene(const RenderArguments& arguments) {
   SceneRequest request;
   PreparedScene& prepared = request.prepared;
@@ -481,6 +502,7 @@ SceneRequest request_scene(const RenderArguments& arguments) {
     rendered.integration.tolerance = reference_tolerance;
   }
   request.mesh_notes = std::make_shared<std::vector<std::string>>();
+  if (arguments.crop) set_crop(*arguments.crop, rendered.layers.front());
   for (LayerDescription& layer : rendered.layers) {
     visit_sources(layer, [&](FieldSource& field) { set_notes(field, arguments.quiet); });
     if (layer.mesh) {  // printed last, so that a failure is one line

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/io/embed_scene.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "arguments/overwriting.h"
+#include "arguments/parse.h"
+#include "commands.h"
+#include "pellucid/cpu/framed_camera.h"
+#include "pellucid/io/image_files.h"
+#include "pellucid/io/internal/atomic_file.h"
+#include "render/progress.h"
+#include "render/render.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+struct ExportArguments {
+  RenderArguments scene;
+  std::string output, largest, crop;
+};
+
+/// "20M": a number of bytes, or of so many thousands of them.
+double parse_byte_count(const std::string& option, const std::string& text) {
+  double number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  const std::string_view unit(rest, static_cast<std::size_t>(end - rest));
+  const double factor = unit.empty() ? 1 : unit == "k" ? 1e3 : unit == "M" ? 1e6 : 1e9;
+  if (error != std::errc{} || !(number > 0) || (factor == 1e9 && unit != "G")) {
+    throw UsageError(
+        fmt::format("{} '{}': expected a number of bytes, as 20M or 500k", option, text));
+  }
+  return number * factor;
+}
+
+void check(const ExportArguments& arguments) {
+  if (extension_of(arguments.output) != ".html") {
+    throw UsageError(fmt::format("-o {}: expected a name that ends in .html", arguments.output));
+  }
+  const RenderArguments& scene = arguments.scene;
+  if (source_text(scene).empty()) {
+    throw UsageError("no input; give INPUT, --channel or --labels (see 'pellucid export --help')");
+  }
+  const NamedFile outputs[] = {{"--output", arguments.output}};
+  const NamedFile inputs[] = {{"INPUT", scene.input}, {"--tf", scene.transfer_function}};
+  refuse_overwriting(outputs, inputs);
+  check_writable(arguments.output);
+}
+
+/// "10:60,0:100,5:25": values from the first number to the one before the second, along x, y, z.
+IndexBox parse_crop(const std::string& option, const std::string& text) {
+  IndexBox box;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (std::size_t a = 0; a < 3; ++a) {
+    int last = 0;
+    const auto number = [&](int& value, char behind) {
+      const auto [rest, error] = std::from_chars(at, end, value);
+      const bool is_good =
+          error == std::errc{} && (behind == 0 ? rest == end : rest != end && *rest == behind);
+      at = is_good && behind != 0 ? rest + 1 : rest;
+      return is_good;
+    };
+    if (!number(box.first[a], ':') || !number(last, a < 2 ? ',' : '\0') || box.first[a] < 0 ||
+        last - box.first[a] < 2) {
+      throw UsageError(fmt::format(
+          "{} '{}': expected X0:X1,Y0:Y1,Z0:Z1, of two values or more each", option, text));
+    }
+    box.count[a] = last - box.first[a];
+  }
+  return box;
+}
+
+int run_export(const ExportArguments& given) {
+  check(given);
+  ExportArguments arguments = given;
+  if (!arguments.crop.empty()) arguments.scene.crop = parse_crop("--crop", arguments.crop);
+  const double largest =
+      arguments.largest.empty() ? 0 : parse_byte_count("--max-size", arguments.largest);
+  PreparedScene prepared = prepare(arguments.scene);
+  const InterruptGuard guard;
+  place_camera(arguments.scene, prepared, [&](const Scene& scene) {
+    const RenderOptions quiet = quiet_options_of(arguments.scene);
+    return unless_interrupted(
+        [&] { return framed_camera(scene, scene.camera, quiet.machine, quiet.monitor); });
+  });
+  if (!arguments.scene.quiet) {
+    for (const std::string& note : prepared.import_notes) print_note(note);
+  }
+  const std::string page = page_of(embed_scene(prepared.description, prepared.scene));
+  const double size = static_cast<double>(page.size());
+  if (largest > 0 && size > largest) {
+    throw Error(
+        fmt::format("{}: not written: it would have {:.1f} MB, more than --max-size {}; "
+                    "take a coarser --level or a part (--crop), or raise it",
+                    arguments.output, size / 1e6, arguments.largest));
+  }
+  write_text_file(arguments.output, page);
+  if (!arguments.scene.quiet) {
+    print_note(fmt::format("{}: {:.1f} MB; it opens in a browser without this program",
+                           arguments.output, size / 1e6));
+  }
+  return 0;
+}
+
+}  // namespace
+
+Command add_export(CommandLine& app) {
+  CommandLine& command = *app.add_subcommand(
+      "export", "Write a page that shows a volume or a scene in any browser, exact, by itself");
+  const auto arguments = std::make_shared<ExportArguments>();
+  arguments->scene.suggests_functions = true;
+  command.add_option(
+      "INPUT", arguments->scene.input,
+      input_help() + ", " + mesh_input_help() + ", SCENE.json or builtin:NAME[:POINTS]");
+  command
+      .add_option("-o,--output", arguments->output,
+                  "Write this page. It holds the data, the viewer and the renderer, and asks for "
+                  "no other file")
+      ->option_text("FILE.html")
+      ->required();
+  command
+      .add_option("--crop", arguments->crop,
+                  "Embed these values of INPUT alone, by their indices from 0, the last ones left "
+                  "out; at their place")
+      ->option_text("X0:X1,Y0:Y1,Z0:Z1");
+  command
+      .add_option("--max-size", arguments->largest,
+                  "Write nothing if the page is larger: a number of bytes, or with k, M or G")
+      ->option_text("SIZE");
+  command
+      .add_option("--threads", arguments->scene.threads,
+                  "Number of threads; 0 (default): one per core")
+      ->option_text("N")
+      ->in_range(0, 4096);
+  command.add_flag("-q,--quiet", arguments->scene.quiet, "Print no notes, only errors");
+  add_scene_options(command, arguments->scene);
+  arguments->scene.volume.add_to(command, false);
+  arguments->scene.mesh.add_to(command, true);
+  command.footer(
+      "Whoever has the page has the data: what is embedded is the values as they are.\n"
+      "\n"
+      "Examples:\n"
+      "  pellucid export brain.nii.gz -o brain.html\n"
+      "  pellucid export scene.json -o scene.html --max-size 20M\n"
+      "  pellucid export cells.zarr --level 2 -o cells.html\n"
+      "  pellucid export head.nrrd --crop 60:200,40:220,0:120 -o skull.html");
+  return {&command, [arguments] { return run_export(*arguments); }};
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "pellucid/io/scene_json.h"
+
+namespace pellucid {
+
+/// A file of an embedded scene.
+struct EmbeddedFile {
+  std::string name;  ///< relative to the scene's folder: "head.npz"
+  std::string bytes;
+};
+
+/// A scene and all that it is made of, for a place that has no files of this machine, such as a
+/// page. Its data are archives of numpy: write_volume(); of meshes "points", "tetrahedra" and an
+/// array for each channel.
+struct EmbeddedScene {
+  std::string scene;  ///< a document that parse_scene() reads
+  std::vector<EmbeddedFile> files;
+};
+
+/// Returns the scene with its data as they were loaded: the values in their own types, the part,
+/// the component and the step that the description chooses, channels without those that are
+/// computed from others. Layers that are hidden stay. `description` is complete
+/// (complete_description()), and `scene` was made from it. Throws Error for what cannot be
+/// embedded, by its layer: fields of one's own, grids whose rectilinear axes are turned or have
+/// their values in cells, a backdrop; and where the files have more than `most_bytes`.
+EmbeddedScene embed_scene(const SceneDescription& description, const Scene& scene,
+                          std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
+
+/// Returns a page that shows the scene in a browser, on its own: HTML with the viewer, the renderer
+/// as WebAssembly and the data. It asks for no other file. Throws Error if the page that it is made
+/// of was not built (scripts/build-web) or is of another version.
+std::string page_of(const EmbeddedScene& scene);
+
+}  // namespace pellucid

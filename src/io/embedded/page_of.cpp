@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "pellucid/io/embed_scene.h"
+#include "pellucid/io/internal/atomic_file.h"
+#include "pellucid/io/internal/module.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+
+namespace {
+
+/// What scripts/build-web makes, and where the data go in it (apps/web/make_page.py).
+constexpr Module page{"pellucid_page.html", "shows scenes in a page",
+                      "Emscripten (Debian: emscripten): run scripts/build-web"};
+constexpr std::string_view mark = "<!-- embedded -->";
+
+void append_base64(std::string& text, std::string_view bytes) {
+  constexpr const char* letters =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const auto byte = [&](std::size_t i) {
+    return i < bytes.size() ? static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) : 0;
+  };
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::uint32_t three = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+    for (std::size_t j = 0; j < 4; ++j) {
+      text += i + j > bytes.size() ? '=' : letters[three >> (18 - 6 * j) & 63];
+    }
+  }
+}
+
+void append_file(std::string& text, const EmbeddedFile& file) {
+  text += "<script type=\"text/plain\" data-embedded=\"" + file.name + "\" data-size=\"" +
+          std::to_string(file.bytes.size()) + "\">";
+  append_base64(text, file.bytes);
+  text += "</script>\n";
+}
+
+}  // namespace
+
+std::string page_of(const EmbeddedScene& scene) {
+  const std::filesystem::path path = module_file(page);
+  const std::string empty = read_text_file(path);
+  const std::size_t at = empty.find(mark);
+  if (at == empty.npos) {
+    throw Error(path.string() + ": is no page for scenes; run scripts/build-web again");
+  }
+  std::string text = empty.substr(0, at);
+  append_file(text, {"scene.json", scene.scene});
+  for (const EmbeddedFile& file : scene.files) append_file(text, file);
+  return text + empty.substr(at + mark.size());
+}
+
+}  // namespace pellucid
