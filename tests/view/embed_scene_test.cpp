@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pellucid/cpu/render.h"
+#include "pellucid/io/read_volume.h"
 #include "pellucid/io/write_volume.h"
 #include "pellucid/scene/error.h"
 #include "tests/io/scratch_folder.h"
@@ -110,6 +111,21 @@ TEST_F(EmbedScene, HoldsFieldsChannelsLabelsAndMasks) {
   EXPECT_EQ(there.description.layers[2].name, "both halves");
   EXPECT_EQ(there.description.layers[2].labels->styles.size(), 2u);
   expect_same_picture(here, there);
+}
+
+TEST_F(EmbedScene, KeepsTheSpaceOfAPatient) {
+  write_field("head.nii", Centering::point);
+  SceneDescription description;
+  description.layers[0].field.file = path("head.nii");
+  const Scene scene = make_scene(description);
+  complete_description(scene.layers[0], description.layers[0]);
+  ASSERT_EQ(world_space(path("head.nii")), "LPS");
+  const EmbeddedScene embedded = embed_scene(description, scene);
+  ASSERT_EQ(embedded.files.size(), 1u);
+  EXPECT_EQ(embedded.files[0].name, "head.npz");
+  elsewhere(embedded);
+  EXPECT_EQ(world_space(path("elsewhere/head.npz")), "LPS");
+  EXPECT_THROW(embed_scene(description, scene, 100), Error);
 }
 
 TEST_F(EmbedScene, GivesFilesPlainNames) {

@@ -78,7 +78,6 @@ bool is_mesh_file(const std::filesystem::path& path) {
 std::string mesh_extensions() {
   std::string text;
   for (const MeshFormat* const format : mesh_formats()) {
-    if (format->extensions.empty()) continue;
     text += (text.empty() ? "" : " ") + std::string(format->extensions);
   }
   return text;

@@ -194,7 +194,10 @@ std::vector<std::string> write_mesh_npz(const MeshChannels& mesh, const Sink& si
   return names;
 }
 
-extern const MeshFormat mesh_npz_format{
-    .name = "NumPy archive", .takes_content = is_mesh_npz, .read = read_mesh_npz};
+extern const MeshFormat mesh_npz_format{.name = "NumPy archive",
+                                        .extensions = ".npz",
+                                        .takes_content = is_mesh_npz,
+                                        .content_decides = true,
+                                        .read = read_mesh_npz};
 
 }  // namespace pellucid

@@ -235,6 +235,7 @@ extern const VolumeFormat npz_format{
     .open = [](const std::filesystem::path& path,
                const ReadOptions& options) { return open_npz(file_source(path), options); },
     .list = list_npz_arrays,
-    .takes_axes = true};
+    .takes_axes = true,
+    .is_of_patients = true};
 
 }  // namespace pellucid

@@ -277,7 +277,7 @@ ReadOn read_on(const ByteSource& source, std::uintmax_t from) {
 
 std::size_t value_count(std::size_t points, int components, const std::string& name) {
   // So many values of 8 bytes are still a number of bytes.
-  constexpr std::size_t largest = std::numeric_limits<std::size_t>::max() / 16;
+  constexpr std::size_t largest = std::numeric_limits<std::size_t>::max() / 16 + 1;
   if (points > largest / static_cast<std::size_t>(components)) {
     throw Error(name + ": a volume of " + std::to_string(points) + " points with " +
                 std::to_string(components) + " components each is too large");
