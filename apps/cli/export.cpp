@@ -42,6 +42,9 @@ double parse_byte_count(const std::string& option, const std::string& text) {
 }
 
 void check(const ExportArguments& arguments) {
+  if (arguments.output.empty()) {
+    throw UsageError("nothing to write; give -o FILE.html (see 'pellucid export --help')");
+  }
   if (extension_of(arguments.output) != ".html") {
     throw UsageError(fmt::format("-o {}: expected a name that ends in .html", arguments.output));
   }
@@ -115,7 +118,7 @@ int run_export(const ExportArguments& given) {
 
 Command add_export(CommandLine& app) {
   CommandLine& command = *app.add_subcommand(
-      "export", "Write a page that shows a volume or a scene in any browser, exact, by itself");
+      "export", "Write a page that shows data in any browser, exact, by itself");
   const auto arguments = std::make_shared<ExportArguments>();
   arguments->scene.suggests_functions = true;
   command.add_option(
@@ -125,8 +128,7 @@ Command add_export(CommandLine& app) {
       .add_option("-o,--output", arguments->output,
                   "Write this page. It holds the data, the viewer and the renderer, and asks for "
                   "no other file")
-      ->option_text("FILE.html")
-      ->required();
+      ->option_text("FILE.html");
   command
       .add_option("--crop", arguments->crop,
                   "Embed these values of INPUT alone, by their indices from 0, the last ones left "

@@ -66,8 +66,10 @@ OTHER_PROJECTS = [
 ]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
-# A header of the standard library, of C or of POSIX: no folder and no suffix, or one of these.
-PLAIN = re.compile(r"^([a-z_0-9]+|(fcntl|unistd|errno|dlfcn|spawn|sys/[a-z]+)\.h)$")
+# A header of the standard library, of C, of POSIX or of Emscripten: no folder and no suffix, or one
+# of these.
+PLAIN = re.compile(r"^([a-z_0-9]+|(fcntl|unistd|errno|dlfcn|spawn|malloc|sys/[a-z]+|"
+                   r"emscripten/[a-z_]+)\.h)$")
 
 
 def read_modules(path):

@@ -6,9 +6,9 @@ import unittest
 
 from program import SOURCE_DIR, ProgramTest, options_of
 
-COMMANDS = ("render", "view", "info", "histogram", "suggest", "convert", "evaluate", "compare",
-            "presets", "transfer-function")
-READ_VOLUMES = ("render", "view", "info", "histogram", "suggest", "convert")
+COMMANDS = ("render", "view", "info", "histogram", "suggest", "convert", "export", "evaluate",
+            "compare", "presets", "transfer-function")
+READ_VOLUMES = ("render", "view", "info", "histogram", "suggest", "convert", "export")
 
 
 def options_of_manual(text):
@@ -49,7 +49,7 @@ class Help(ProgramTest):
             of_manual = options_of_manual(self.section(command))
             if command in READ_VOLUMES:
                 of_manual |= options_of_manual(self.introduction())
-            if command == "view":  # which takes those of render that say what is seen
+            if command in ("view", "export"):  # which take those of render that say what is seen
                 of_manual |= options_of_manual(self.section("render")) & set(of_help)
             self.assertEqual(set(of_help) - {"--help"} - of_manual, set(),
                              f"{command}: not in docs/reference/command-line.md")

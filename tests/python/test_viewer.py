@@ -247,6 +247,9 @@ def test_a_notebook_shows_it(ball, tmp_path):
         try:
             browser.get(f"http://localhost:{server.server_port}/")
             browser.switch_to.frame(browser.find_element("tag name", "iframe"))
+            # Within what the notebook keeps, where it keeps something, the program's page is shown.
+            for inner in browser.find_elements("tag name", "iframe"):
+                browser.switch_to.frame(inner)
             deadline = time.monotonic() + page_driver.SECONDS
             while "every pixel within" not in browser.find_element("css selector", "#state").text:
                 assert time.monotonic() < deadline
