@@ -199,10 +199,7 @@ Command add_convert(CommandLine& app) {
       ->option_text("FILE");
   command.add_flag("--json", arguments->json, "Print a report of what was written as JSON");
   command.add_flag("-q,--quiet", arguments->quiet, "Print no notes, only errors");
-  command
-      .add_option("--threads", arguments->threads, "Number of threads; 0 (default): one per core")
-      ->option_text("N")
-      ->in_range(0, 4096);
+  command.add_threads(arguments->threads);
   arguments->volume.add_to(command);
   command.footer(
       "A volume keeps its type and components. A note names each property that the format cannot\n"

@@ -12,7 +12,6 @@
 #include "arguments/overwriting.h"
 #include "arguments/parse.h"
 #include "commands.h"
-#include "pellucid/cpu/framed_camera.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/internal/atomic_file.h"
 #include "render/progress.h"
@@ -90,11 +89,7 @@ int run_export(const ExportArguments& given) {
       arguments.largest.empty() ? 0 : parse_byte_count("--max-size", arguments.largest);
   PreparedScene prepared = prepare(arguments.scene);
   const InterruptGuard guard;
-  place_camera(arguments.scene, prepared, [&](const Scene& scene) {
-    const RenderOptions quiet = quiet_options_of(arguments.scene);
-    return unless_interrupted(
-        [&] { return framed_camera(scene, scene.camera, quiet.machine, quiet.monitor); });
-  });
+  place_camera(arguments.scene, prepared);
   if (!arguments.scene.quiet) {
     for (const std::string& note : prepared.import_notes) print_note(note);
   }
@@ -138,11 +133,7 @@ Command add_export(CommandLine& app) {
       .add_option("--max-size", arguments->largest,
                   "Write nothing if the page is larger: a number of bytes, or with k, M or G")
       ->option_text("SIZE");
-  command
-      .add_option("--threads", arguments->scene.threads,
-                  "Number of threads; 0 (default): one per core")
-      ->option_text("N")
-      ->in_range(0, 4096);
+  command.add_threads(arguments->scene.threads);
   command.add_flag("-q,--quiet", arguments->scene.quiet, "Print no notes, only errors");
   add_scene_options(command, arguments->scene);
   arguments->scene.volume.add_to(command, false);

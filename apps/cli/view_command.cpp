@@ -143,11 +143,7 @@ Command add_view(CommandLine& app) {
                    "Print the address only. Default: also open it in the browser");
   command.add_flag("--end-with-page", arguments->end_with_page,
                    "End when the last page is closed. Default: end by Ctrl-C");
-  command
-      .add_option("--threads", arguments->scene.threads,
-                  "Number of threads; 0 (default): one per core")
-      ->option_text("N")
-      ->in_range(0, 4096);
+  command.add_threads(arguments->scene.threads);
   add_scene_options(command, arguments->scene);
   arguments->scene.volume.add_to(command, false);
   arguments->scene.mesh.add_to(command, true);

@@ -30,7 +30,7 @@ class FrameMaker {
   FrameMaker(int threads, Publish publish)
       : publish_(std::move(publish)), renderer_(threads), sampler_(threads) {}
 
-  /// How far a frame is.
+  /// Stage of a frame.
   enum class State { goes_on, exact, overtaken };
 
   /// Begins a frame of the scene, which must not change before it ends. `is_overtaken` tells

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view_input.h"
 
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/io/internal/color_data.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/io/remake_scene.h"
-#include "pellucid/scene/error.h"
 #include "suggestions.h"
 
 namespace pellucid::view {
@@ -21,12 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw Error(path.string() + ": cannot read the file");
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 bool is_scene(const fs::path& path) {
   return path.extension() == ".json" && !is_volume_json(path);
 }
@@ -34,7 +26,7 @@ bool is_scene(const fs::path& path) {
 SceneDescription describe(const std::string& input, const std::shared_ptr<Look>& look) {
   const fs::path path = input;
   if (is_scene(path))
-    return parse_scene(text_of(path), path.filename().string(), path.parent_path());
+    return parse_scene(read_text_file(path), path.filename().string(), path.parent_path());
   SceneDescription description;
   LayerDescription& layer = description.layers.front();
   if (!input.starts_with("builtin:") && is_mesh_file(path)) {

@@ -18,26 +18,23 @@ import re
 MARK = "<!-- embedded -->"
 IMPORT = re.compile(r"^import \{([^}]*)\}\s*from '\./(\w+)\.js';\n", re.MULTILINE)
 EXPORT = re.compile(r"^export (?=(?:async )?(?:function|class|const)\s+(\w+))", re.MULTILINE)
-NAME = re.compile(r"^export (?:async )?(?:function|class|const)\s+(\w+)", re.MULTILINE)
 
 
 def read(path):
     return path.read_text(encoding="utf-8")
 
 
-def order(modules, name, done):
-    """The modules that `name` needs, each behind those that it imports."""
-    if name in done:
-        return
-    done[name] = None
+def add_behind_imports(modules, name, done):
+    """Appends a module to the list `done`, behind those that it imports."""
     for _, needed in IMPORT.findall(modules[name]):
-        order(modules, needed, done)
-    done[name] = done.pop(name)
+        if needed not in done:
+            add_behind_imports(modules, needed, done)
+    done.append(name)
 
 
 def bundle(modules):
-    done = {}
-    order(modules, "main", done)
+    done = []
+    add_behind_imports(modules, "main", done)
     if any(re.search(r"^(import|export)\b", EXPORT.sub("", IMPORT.sub("", text)), re.MULTILINE)
            for text in modules.values()):
         raise SystemExit("make_page.py: a module of the page imports or exports in another way")
@@ -47,10 +44,9 @@ def bundle(modules):
         imports = "".join(
             f"const {{{' '.join(names.replace(' as ', ': ').split())}}} = {needed}_module;\n"
             for names, needed in IMPORT.findall(text))
-        exported = NAME.findall(text)
         body = EXPORT.sub("", IMPORT.sub("", text))
         parts.append(f"const {name}_module = (() => {{\n{imports}{body}"
-                     f"return {{{', '.join(exported)}}};\n}})();")
+                     f"return {{{', '.join(EXPORT.findall(text))}}};\n}})();")
     return "\n".join(parts)
 
 

@@ -4,18 +4,14 @@
 // and its arrays to the module's files, and reads the picture from its memory.
 #include <emscripten/emscripten.h>
 
-#include <cmath>
-#include <cstddef>
 #include <exception>
-#include <fstream>
-#include <iterator>
 #include <new>
 #include <string>
+#include <utility>
 
 #include "pellucid/cpu/framed_camera.h"
 #include "pellucid/cpu/renderer.h"
 #include "pellucid/io/scene_json.h"
-#include "pellucid/scene/error.h"
 #include "view/view_input.h"
 
 namespace pellucid {
@@ -72,11 +68,12 @@ EMSCRIPTEN_KEEPALIVE int pellucid_render(const char* path, int width, int height
   return 0;
 }
 
-/// Of the last frame: four premultiplied linear numbers of each pixel, row by row from the top.
+/// Returns four premultiplied linear numbers of each pixel of the last frame, row by row from the
+/// top.
 EMSCRIPTEN_KEEPALIVE const void* pellucid_pixels() {
   return pellucid::last().image.pixels.data();
 }
-/// The largest error of each pixel; null: it is not known.
+/// Returns the largest error of each pixel; null: it is not known.
 EMSCRIPTEN_KEEPALIVE const void* pellucid_errors() {
   const auto& errors = pellucid::last().image.error;
   return errors.empty() ? nullptr : errors.data();
@@ -96,7 +93,7 @@ EMSCRIPTEN_KEEPALIVE double pellucid_pixels_over() {
 EMSCRIPTEN_KEEPALIVE double pellucid_seconds() {
   return pellucid::last().report.seconds;
 }
-/// The camera as JSON; where a frame failed, why.
+/// Returns the camera as JSON; where a frame failed, why.
 EMSCRIPTEN_KEEPALIVE const char* pellucid_text() {
   return pellucid::last().text.c_str();
 }

@@ -39,7 +39,7 @@ namespace {
 
 /// The only page that there is.
 constexpr PageId page = 1;
-/// Where a page's files are (apps/web/page/worker.js).
+/// Folders of a page's files (apps/web/page/worker.js).
 constexpr const char* folder_of_scene = "/scene";
 constexpr const char* folder_of_uploads = "/uploads";
 /// Bytes of files for which a heap of 2 GiB has room, beside what is made of them.

@@ -61,7 +61,7 @@ class EmbedScene : public test::ScratchFolder {
       }
     }
     EXPECT_GT(brightest, 0.05F);
-    // The matrix is taken apart and put together: the places are off by some 1e-16.
+    // Reading the matrix back rounds positions, by some 1e-16.
     EXPECT_LT(largest, 1e-5F);
   }
 

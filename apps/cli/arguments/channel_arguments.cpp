@@ -95,9 +95,7 @@ void ChannelArguments::add_to(CommandLine& app) {
                  "Use these channels. Default: value,gradient_magnitude for one file, else all. "
                  "Each of several files is named by its file name up to the first dot")
       ->option_text("NAME,NAME");
-  app.add_option("--threads", threads, "Number of threads; 0 (default): one per core")
-      ->option_text("N")
-      ->in_range(0, 4096);
+  app.add_threads(threads);
   volume.add_to(app, true, false);
 }
 

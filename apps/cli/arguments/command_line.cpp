@@ -177,6 +177,12 @@ Option* CommandLine::add_flag(const std::string& names, bool& value, const std::
   return keep(app_->add_flag(names, value, help));
 }
 
+void CommandLine::add_threads(int& threads) {
+  add_option("--threads", threads, "Number of threads; 0 (default): one per core")
+      ->option_text("N")
+      ->in_range(0, 4096);
+}
+
 void CommandLine::footer(const std::string& text) {
   app_->footer(text);
 }

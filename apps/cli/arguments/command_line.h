@@ -65,6 +65,8 @@ class CommandLine {
                      const std::string& help);
   Option* add_option(const std::string& names, std::size_t& value, const std::string& help);
   Option* add_flag(const std::string& names, bool& value, const std::string& help);
+  /// Adds --threads, of which 0 stands for one per core.
+  void add_threads(int& threads);
   /// Sets the text at the end of help.
   void footer(const std::string& text);
 

@@ -69,6 +69,17 @@ Device device_of(const RenderArguments& arguments) {
   return arguments.device == "emulated" ? Device::emulated : Device::cpu;
 }
 
+/// Calls `work`; where a signal cancels it, throws Interrupted.
+template <class Work>
+auto unless_interrupted(Work&& work) {
+  try {
+    return work();
+  } catch (const Cancelled&) {
+    InterruptGuard::check();
+    throw;
+  }
+}
+
 RenderResult render_image(const RenderArguments& arguments, const PreparedScene& prepared) {
   const Scene& scene = prepared.scene;
   RenderOptions options = options_of(arguments, prepared);
@@ -124,11 +135,7 @@ int run_render(const RenderArguments& arguments) {
   PreparedScene prepared = prepare(arguments);
   const InterruptGuard guard;
   if (arguments.renders() || !arguments.save_scene.empty()) {
-    place_camera(arguments, prepared, [&](const Scene& scene) {
-      const RenderOptions quiet = quiet_options_of(arguments);
-      return unless_interrupted(
-          [&] { return framed_camera(scene, scene.camera, quiet.machine, quiet.monitor); });
-    });
+    place_camera(arguments, prepared);
   }
   const auto& function = prepared.description.layers.front().transfer_function;
   const bool wants_function = arguments.print_tf || !arguments.save_tf.empty();
@@ -163,6 +170,14 @@ RenderOptions quiet_options_of(const RenderArguments& arguments) {
   options.machine.threads = arguments.threads;
   options.monitor.progress = [](double) { return !InterruptGuard::interrupted(); };
   return options;
+}
+
+void place_camera(const RenderArguments& arguments, PreparedScene& prepared) {
+  place_camera(arguments, prepared, [&](const Scene& scene) {
+    const RenderOptions quiet = quiet_options_of(arguments);
+    return unless_interrupted(
+        [&] { return framed_camera(scene, scene.camera, quiet.machine, quiet.monitor); });
+  });
 }
 
 RenderOptions options_of(const RenderArguments& arguments, const PreparedScene& prepared) {

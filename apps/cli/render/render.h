@@ -142,6 +142,8 @@ using CameraFraming = std::function<Camera(const Scene&)>;
 /// enlarges the picture. Throws Error.
 void place_camera(const RenderArguments& arguments, PreparedScene& prepared,
                   const CameraFraming& frame);
+/// Does the same in this process, by drafts, which a signal ends. Throws Interrupted too.
+void place_camera(const RenderArguments& arguments, PreparedScene& prepared);
 /// Reads the input and puts the arguments over what it says. Throws Error.
 PreparedScene prepare(const RenderArguments& arguments);
 

@@ -138,10 +138,7 @@ void add_integration_options(CommandLine& command, RenderArguments& arguments) {
       ->excludes(method)
       ->excludes(step)
       ->excludes(precision);
-  command
-      .add_option("--threads", arguments.threads, "Number of threads; 0 (default): one per core")
-      ->option_text("N")
-      ->in_range(0, 4096);
+  command.add_threads(arguments.threads);
   command
       .add_option(
           "--device", arguments.device,

@@ -33,9 +33,10 @@ export interface Picture {
 
 export class Pellucid {
   /**
-   * Renders a scene: an object as docs/reference/scene.md describes it, whose files are the names of
-   * `arrays`, such as {"field": {"file": "head", "spacing": [1, 1, 2]}}. Files of other formats may
-   * be given as bytes (Uint8Array): "head.nii". Throws Error with one line that says what to do.
+   * Renders a scene: an object as docs/reference/scene.md describes it, whose files are the names
+   * of `arrays`, such as {"field": {"file": "head", "spacing": [1, 1, 2]}}. Files of other formats
+   * may be given as bytes (Uint8Array): "head.nii". Throws Error with one line that says what to
+   * do.
    */
   render(scene: object, arrays?: Record<string, NamedArray | Uint8Array>,
     options?: RenderOptions): Picture;

@@ -118,41 +118,40 @@ FrameWork::FrameWork(const ImageView& image, const Scene& scene, const RenderOpt
 
 FrameWork::~FrameWork() = default;
 
+double FrameWork::seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
 bool FrameWork::advance(std::chrono::duration<double> time) {
   const Clock::time_point start = Clock::now();
   const bool is_endless = time > std::chrono::hours(24);
   const Clock::time_point end = is_endless
                                     ? Clock::time_point::max()
                                     : start + std::chrono::duration_cast<Clock::duration>(time);
-  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   const double before = report_.seconds;
-  bool is_done = true;
-  if (!tiles_) {
-    const Device wanted = options_.machine.device;
-    const std::shared_ptr<CachedDevice> device =
-        wanted == Device::cpu ? nullptr : devices_.find(wanted);
-    set_up();
-    report_.setup_seconds = seconds();
-    const Frame& frame = tiles_->frame;
-    const std::string reason = device ? reason_for_cpu(frame, options_) : "";
-    if (device && reason.empty()) {
-      render_on_device(frame, options_, *device, image_, report_);
-    } else {
-      if (device) report_.device = "rendered by the CPU: devices cannot do " + reason + " yet";
-      is_done = render_tiles(end);
-    }
-  } else {
-    is_done = render_tiles(end);
-  }
-  report_.seconds = before + seconds();
+  const bool is_done = (!tiles_ && begin(start)) || render_tiles(end);
+  report_.seconds = before + seconds_since(start);
   return is_done;
 }
 
-void FrameWork::set_up() {
+/// Sets the frame up. Returns whether a device rendered it, to its end.
+bool FrameWork::begin(Clock::time_point start) {
+  const Device wanted = options_.machine.device;
+  const std::shared_ptr<CachedDevice> device =
+      wanted == Device::cpu ? nullptr : devices_.find(wanted);
   tiles_ = std::make_unique<Tiles>(image_, scene_, options_, report_.threads, kept_);
   const Frame& frame = tiles_->frame;
+  report_.setup_seconds = seconds_since(start);
   report_.sampled_in_float = scene_.integration.method != Method::exact && frame.only_layer &&
                              frame.only_layer->fast() != nullptr;
+  if (!device) return false;
+  const std::string reason = reason_for_cpu(frame, options_);
+  if (!reason.empty()) {
+    report_.device = "rendered by the CPU: devices cannot do " + reason + " yet";
+    return false;
+  }
+  render_on_device(frame, options_, *device, image_, report_);
+  return true;
 }
 
 bool FrameWork::render_tiles(Clock::time_point end) {

@@ -34,14 +34,15 @@ class FrameWork {
   /// the set-up, and devices render to the end. Returns whether the frame is done. Throws
   /// Cancelled.
   bool advance(std::chrono::duration<double> time);
-  /// What the frame took, once it is done.
+  /// Returns the work that the frame took, once it is done.
   const RenderReport& report() const noexcept { return report_; }
 
  private:
   using Clock = std::chrono::steady_clock;
   struct Tiles;
 
-  void set_up();
+  static double seconds_since(Clock::time_point start);
+  bool begin(Clock::time_point start);
   bool render_tiles(Clock::time_point end);
   bool render_level(Clock::time_point end);
   void end_level();

@@ -13,7 +13,8 @@ namespace pellucid {
 
 namespace {
 
-/// What scripts/build-web makes, and where the data go in it (apps/web/make_page.py).
+/// The page that scripts/build-web makes, and the mark in it that the data replace
+/// (apps/web/make_page.py).
 constexpr Module page{"pellucid_page.html", "shows scenes in a page",
                       "Emscripten (Debian: emscripten): run scripts/build-web"};
 constexpr std::string_view mark = "<!-- embedded -->";

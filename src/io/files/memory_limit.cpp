@@ -111,10 +111,6 @@ void apply_resources(const fs::path& root, MemoryLimit& limit) {
   apply_resource(RLIMIT_DATA, data * page, "the limit of data (ulimit -d)", limit);
 }
 
-std::string mebibytes(std::uintmax_t bytes) {
-  return std::to_string(bytes >> 20) + " MiB";
-}
-
 }  // namespace
 
 MemoryLimit memory_limit(const fs::path& root) {
@@ -123,16 +119,6 @@ MemoryLimit memory_limit(const fs::path& root) {
   apply_groups(root, limit);
   apply_resources(root, limit);
   return limit;
-}
-
-void refuse_memory(std::uintmax_t bytes, const std::string& what, const MemoryLimit& limit) {
-  throw Error(what + " would take " + mebibytes(bytes) + " of memory, but " + limit.of +
-              " leaves " + mebibytes(limit.bytes) + "; make room, or crop or reduce the volume");
-}
-
-void check_memory(std::uintmax_t bytes, const std::string& what, const fs::path& root) {
-  const MemoryLimit limit = memory_limit(root);
-  if (bytes > limit.bytes) refuse_memory(bytes, what, limit);
 }
 
 }  // namespace pellucid

@@ -7,18 +7,19 @@ pellucid_io_sources(
     gzip_source.cpp
     input_file.cpp
     mapped_file.cpp
+    memory_check.cpp
     memory_limit.cpp
     zlib_inflater.cpp
   LATER
-    gzip_writer.cpp
+    deflater.cpp
     numbered_files.cpp
     temporary_folder.cpp
     zip_archive.cpp
     zip_writer.cpp
   LOOPS
     bzip2_inflater.cpp
+    deflater.cpp
     gzip_source.cpp
-    gzip_writer.cpp
     zlib_inflater.cpp
   NOT_WEB
     memory_limit.cpp

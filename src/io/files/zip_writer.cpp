@@ -7,8 +7,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <limits>
-#include <new>
 #include <utility>
 
 namespace pellucid {
@@ -28,7 +26,7 @@ void append(std::string& text, std::uint64_t number, int bytes) {
   for (int i = 0; i < bytes; ++i) text += static_cast<char>(number >> (8 * i) & 255);
 }
 
-/// What does not fit into 32 bits stands in an extra field.
+/// Returns a size as 32 bits hold it; the whole of a larger one stands in an extra field.
 std::uint64_t short_size(std::uint64_t size) {
   return std::min(size, largest_32);
 }
@@ -40,21 +38,6 @@ struct ZipWriter::Entry {
   std::uint64_t header = 0, size = 0, packed_size = 0;
   std::uint32_t checksum = 0;
   bool is_large = false;  ///< whether its sizes take 8 bytes
-};
-
-struct ZipWriter::Deflater {
-  Deflater() {
-    if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, -15, 8, Z_DEFAULT_STRATEGY) !=
-        Z_OK) {
-      throw std::bad_alloc();
-    }
-  }
-  ~Deflater() { deflateEnd(&stream); }
-  Deflater(const Deflater&) = delete;
-  Deflater& operator=(const Deflater&) = delete;
-
-  z_stream stream{};
-  std::vector<std::byte> output = std::vector<std::byte>(std::size_t{1} << 16);
 };
 
 ZipWriter::ZipWriter(Sink to) : to_(std::move(to)) {}
@@ -97,49 +80,29 @@ void ZipWriter::begin(const std::string& name, std::uint64_t size) {
   write(header);
   entry.checksum = static_cast<std::uint32_t>(crc32(0, nullptr, 0));
   entries_.push_back(std::move(entry));
-  deflater_ = std::make_unique<Deflater>();
+  deflater_ = std::make_unique<Deflater>(Deflater::Wrapping::none, [this](auto part) {
+    entries_.back().packed_size += part.size();
+    write(part);
+  });
 }
 
 void ZipWriter::put(std::span<const std::byte> bytes) {
   Entry& entry = entries_.back();
-  z_stream& stream = deflater_->stream;
-  constexpr std::size_t at_once = std::size_t{1} << 30;
-  while (!bytes.empty()) {
-    const std::span<const std::byte> part = bytes.first(std::min(bytes.size(), at_once));
-    bytes = bytes.subspan(part.size());
-    // zlib's signature cannot say that it only reads.
-    Bytef* const first = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(part.data()));
-    entry.checksum =
-        static_cast<std::uint32_t>(crc32(entry.checksum, first, static_cast<uInt>(part.size())));
-    entry.size += part.size();
-    stream.next_in = first;
-    stream.avail_in = static_cast<uInt>(part.size());
-    while (stream.avail_in > 0) {
-      stream.next_out = reinterpret_cast<Bytef*>(deflater_->output.data());
-      stream.avail_out = static_cast<uInt>(deflater_->output.size());
-      deflate(&stream, Z_NO_FLUSH);
-      const std::size_t got = deflater_->output.size() - stream.avail_out;
-      entry.packed_size += got;
-      write(std::span(deflater_->output).first(got));
-    }
+  entry.size += bytes.size();
+  deflater_->put(bytes);
+  // zlib counts with 32 bits.
+  constexpr std::size_t most = std::size_t{1} << 30;
+  for (; !bytes.empty(); bytes = bytes.subspan(std::min(most, bytes.size()))) {
+    entry.checksum = static_cast<std::uint32_t>(
+        crc32(entry.checksum, reinterpret_cast<const Bytef*>(bytes.data()),
+              static_cast<uInt>(std::min(most, bytes.size()))));
   }
 }
 
 void ZipWriter::end_entry() {
   if (!deflater_) return;
   Entry& entry = entries_.back();
-  z_stream& stream = deflater_->stream;
-  stream.avail_in = 0;
-  int status = Z_OK;
-  while (status != Z_STREAM_END) {
-    stream.next_out = reinterpret_cast<Bytef*>(deflater_->output.data());
-    stream.avail_out = static_cast<uInt>(deflater_->output.size());
-    status = deflate(&stream, Z_FINISH);
-    if (status != Z_OK && status != Z_STREAM_END) throw std::bad_alloc();
-    const std::size_t got = deflater_->output.size() - stream.avail_out;
-    entry.packed_size += got;
-    write(std::span(deflater_->output).first(got));
-  }
+  deflater_->finish();
   deflater_.reset();
   std::string descriptor;
   append(descriptor, 0x08074b50, 4);

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "deflater.h"
+
 namespace pellucid {
 
 /// Writes a zip archive of deflated files, part by part, to a function. Without dates, so that the
@@ -30,7 +32,6 @@ class ZipWriter {
 
  private:
   struct Entry;
-  struct Deflater;
 
   void write(std::span<const std::byte> bytes);
   void write(const std::string& bytes);

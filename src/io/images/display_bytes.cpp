@@ -108,4 +108,9 @@ std::vector<std::uint8_t> transparent_display_bytes(const Image& image) {
   return bytes;
 }
 
+std::vector<std::uint8_t> to_srgb8(const Image& image,
+                                   const std::optional<Background>& background) {
+  return background ? display_bytes(image, *background) : transparent_display_bytes(image);
+}
+
 }  // namespace pellucid

@@ -4,17 +4,17 @@
 // edition: chunks with a length, a type and a checksum; one of them holds the rows, deflated.
 #include <zlib.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <new>
+#include <cstdint>
+#include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "files/deflater.h"
 #include "image_checks.h"
-#include "pellucid/io/display_bytes.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/internal/atomic_file.h"
-#include "pellucid/scene/error.h"
 
 namespace pellucid {
 
@@ -38,21 +38,12 @@ void append_chunk(std::string& file, const std::string& type, const std::string&
 
 /// Returns the bytes as zlib packs them.
 std::string packed(const std::string& bytes) {
-  z_stream stream{};
-  if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, 15, 8, Z_DEFAULT_STRATEGY) != Z_OK)
-    throw std::bad_alloc();
-  std::string result, part(std::size_t{1} << 16, '\0');
-  stream.next_in = bytes_of(bytes);
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  int status = Z_OK;
-  while (status == Z_OK) {
-    stream.next_out = reinterpret_cast<Bytef*>(part.data());
-    stream.avail_out = static_cast<uInt>(part.size());
-    status = deflate(&stream, Z_FINISH);
-    result.append(part, 0, part.size() - stream.avail_out);
-  }
-  deflateEnd(&stream);
-  if (status != Z_STREAM_END) throw Error("PNG: cannot encode: the rows were not compressed");
+  std::string result;
+  Deflater zlib(Deflater::Wrapping::zlib, [&](std::span<const std::byte> part) {
+    result.append(reinterpret_cast<const char*>(part.data()), part.size());
+  });
+  zlib.put(std::as_bytes(std::span(bytes)));
+  zlib.finish();
   return result;
 }
 
@@ -72,11 +63,6 @@ std::string filtered(const std::vector<std::uint8_t>& pixels, std::size_t row, s
 }
 
 }  // namespace
-
-std::vector<std::uint8_t> to_srgb8(const Image& image,
-                                   const std::optional<Background>& background) {
-  return background ? display_bytes(image, *background) : transparent_display_bytes(image);
-}
 
 std::string encode_png(const Image& image, const std::optional<Background>& background) {
   check_image(image, "PNG");

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "image_checks.h"
-#include "pellucid/io/display_bytes.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
@@ -98,11 +97,6 @@ bool write_stream(std::FILE* stream, const Image& image,
 }
 
 }  // namespace
-
-std::vector<std::uint8_t> to_srgb8(const Image& image,
-                                   const std::optional<Background>& background) {
-  return background ? display_bytes(image, *background) : transparent_display_bytes(image);
-}
 
 void write_png(const Image& image, const std::filesystem::path& path,
                const std::optional<Background>& background) {

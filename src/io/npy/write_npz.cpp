@@ -53,15 +53,6 @@ std::vector<double> affine_of(const GridPlacement& placement) {
   return matrix;
 }
 
-bool is_identity(const Mat3<double>& direction) {
-  const Mat3<double> identity;
-  for (int a = 0; a < 3; ++a) {
-    const Vec3<double> difference = direction.column[a] - identity.column[a];
-    if (dot(difference, difference) != 0) return false;
-  }
-  return true;
-}
-
 /// Puts positions along the axes, where one is rectilinear: those of uniform axes as well.
 void put_positions(ZipWriter& archive, const Volume::Description& d, const std::string& path) {
   const GridPlacement& placement = d.placement;
@@ -70,7 +61,7 @@ void put_positions(ZipWriter& archive, const Volume::Description& d, const std::
                 ": not written: cells of several sizes, with values in them, cannot be held "
                 "by .npz; write tetrahedra, .vtu");
   }
-  if (!is_identity(placement.direction)) {
+  if (placement.direction != Mat3<double>()) {
     throw Error(path +
                 ": not written: the values stand at positions of their own along axes that "
                 "are turned, which .npz cannot hold; write tetrahedra, .vtu");

@@ -22,12 +22,8 @@ Losses write_raw(const WrittenVolume& volume, const Sink& sink) {
           exact_text(placement.origin, ",");
   if (d.centering == Centering::cell) read += " --centering cell";
   Losses losses{read};
-  const Mat3<double> identity;
-  for (int a = 0; a < 3; ++a) {
-    const Vec3<double> difference = placement.direction.column[a] - identity.column[a];
-    if (dot(difference, difference) == 0) continue;
+  if (placement.direction != Mat3<double>()) {
     losses.emplace_back("the direction of the axes is lost");
-    break;
   }
   return losses;
 }

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string_view>
 
-#include "files/gzip_writer.h"
+#include "files/deflater.h"
 #include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "text/text.h"
@@ -77,7 +77,7 @@ std::vector<std::string> write_volume(std::span<const Volume> components,
   };
   Losses losses;
   if (writer->compressed) {
-    GzipWriter gzip(to_file);
+    Deflater gzip(Deflater::Wrapping::gzip, to_file);
     losses = writer->write(volume, [&](std::span<const std::byte> bytes) { gzip.put(bytes); });
     gzip.finish();
   } else {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "gzip_writer.h"
+#include "deflater.h"
 
 #include <zlib.h>
 
@@ -10,25 +10,28 @@
 
 namespace pellucid {
 
-struct GzipWriter::State {
+struct Deflater::State {
   z_stream stream{};
   std::vector<std::byte> out = std::vector<std::byte>(std::size_t{1} << 16);
 };
 
-GzipWriter::GzipWriter(std::function<void(std::span<const std::byte>)> to)
+Deflater::Deflater(Wrapping wrapping, std::function<void(std::span<const std::byte>)> to)
     : to_(std::move(to)), state_(std::make_unique<State>()) {
-  constexpr int gzip_window_bits = 31, memory_level = 8;
-  if (deflateInit2(&state_->stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, gzip_window_bits,
-                   memory_level, Z_DEFAULT_STRATEGY) != Z_OK) {
+  constexpr int largest_window = 15, memory_level = 8;
+  const int window_bits = wrapping == Wrapping::none   ? -largest_window
+                          : wrapping == Wrapping::zlib ? largest_window
+                                                       : 16 + largest_window;
+  if (deflateInit2(&state_->stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, window_bits, memory_level,
+                   Z_DEFAULT_STRATEGY) != Z_OK) {
     throw std::bad_alloc();
   }
 }
 
-GzipWriter::~GzipWriter() {
+Deflater::~Deflater() {
   deflateEnd(&state_->stream);
 }
 
-void GzipWriter::put(std::span<const std::byte> bytes) {
+void Deflater::put(std::span<const std::byte> bytes) {
   // zlib counts with 32 bits.
   constexpr std::size_t most = std::size_t{1} << 30;
   for (std::size_t begin = 0; begin < bytes.size(); begin += most) {
@@ -36,11 +39,11 @@ void GzipWriter::put(std::span<const std::byte> bytes) {
   }
 }
 
-void GzipWriter::finish() {
+void Deflater::finish() {
   run({}, true);
 }
 
-void GzipWriter::run(std::span<const std::byte> bytes, bool last) {
+void Deflater::run(std::span<const std::byte> bytes, bool last) {
   z_stream& stream = state_->stream;
   // zlib does not write to what it reads; its interface is older than const.
   stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(bytes.data()));
