@@ -256,6 +256,7 @@ VolumeFile open_grid(const std::filesystem::path& path, const ReadOptions& optio
   file.components = array.components;
   file.holds = one_line(array.holds + " in \"" + array.name + "\"");
   file.array = array.name;
+  file.times = array.times;
   file.reads_parts = array.reads_parts;
   for (const std::string& note : array.notes) {
     if (options.note) options.note(name + ": " + one_line(note));

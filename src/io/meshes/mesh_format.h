@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "mesh_blocks.h"
 #include "pellucid/io/read_mesh.h"
@@ -21,11 +22,16 @@ struct MeshFormat {
   bool content_decides = false;  ///< whether an extension tells nothing of a file that is there
   /// Reads a file, of which is known that it is there. Throws Error.
   MeshBlocks (*read)(const std::filesystem::path& path, const MeshReadOptions& options);
+  /// Returns the times of the steps, in any order; null: the format has none. Throws Error.
+  std::vector<double> (*times)(const std::filesystem::path& path) = nullptr;
   bool takes_solution = false;  ///< in a file of its own: MeshReadOptions::q
 };
 
 /// Returns all formats of this build. CMake writes the source, from what the folders name. No two
 /// take the content of the same file, but for files of HDF5, of which VTKHDF is asked first.
 std::span<const MeshFormat* const> mesh_formats();
+
+/// Returns the times of a file's steps; empty: it has none. Throws Error as read_mesh() does.
+std::vector<double> mesh_times(const std::filesystem::path& path, const MeshReadOptions& options);
 
 }  // namespace pellucid

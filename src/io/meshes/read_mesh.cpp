@@ -100,6 +100,12 @@ MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& opt
   }
 }
 
+std::vector<double> mesh_times(const std::filesystem::path& path, const MeshReadOptions& options) {
+  check_input_file(path);
+  const auto times = format_of(path, options).times;
+  return times == nullptr ? std::vector<double>{} : times(path);
+}
+
 const MeshArray& default_array(const MeshFile& file) {
   const std::vector<MeshArray>& arrays = file.grid.arrays;
   if (arrays.empty()) {

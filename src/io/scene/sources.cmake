@@ -20,4 +20,5 @@ pellucid_io_sources(
     scene_json_mesh.cpp
     scene_json_values.cpp
     scene_json_write.cpp
+    source_times.cpp
     transfer_function_description.cpp)

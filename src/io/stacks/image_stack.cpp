@@ -396,19 +396,20 @@ class Finder {
 };
 
 /// Keeps the step in time that is nearest to what the options say, or tells which there are.
-void choose_time(Stack& stack, const ReadOptions& options, const std::string& name) {
+/// Returns the times.
+std::vector<double> choose_time(Stack& stack, const ReadOptions& options, const std::string& name) {
   PageLayout& layout = stack.volume.layout;
   if (options.time && layout.times < 2) {
     throw Error(name + ": has no steps in time; leave the time out");
   }
-  if (layout.times < 2) return;
+  if (layout.times < 2) return {};
   const double step = stack.said.time_step.value_or(1);
-  const std::vector<double> times =
+  std::vector<double> times =
       even_times(static_cast<std::size_t>(layout.times), 0, step > 0 ? step : 1);
   refuse_movie(times.size(), layout.slices, options, name);
   if (!options.time) {
     if (options.note) options.note(name + ": holds " + times_note(times));
-    return;
+    return times;
   }
   const std::size_t nearest = nearest_step(times, options.time);
   if (options.note) options.note(name + ": " + step_note(times, nearest, *options.time));
@@ -417,6 +418,7 @@ void choose_time(Stack& stack, const ReadOptions& options, const std::string& na
   const auto begin = layout.planes.begin() + chosen * planes;
   layout.planes = std::vector<PlanePage>(begin, begin + planes);
   layout.times = 1;
+  return times;
 }
 
 }  // namespace
@@ -459,11 +461,12 @@ VolumeFile open_stack(const fs::path& path, const ReadOptions& options) {
     throw Error(name +
                 ": is no DICOM and has no OME-XML, and only of those a series may be chosen");
   }
-  choose_time(stack, options, name);
+  std::vector<double> times = choose_time(stack, options, name);
   const PageFormat& format = stack.volume.format;
   const PageLayout& layout = stack.volume.layout;
   const std::size_t points = value_count({format.columns, format.rows, layout.slices}, name);
   VolumeFile file;
+  file.times = std::move(times);
   file.description.name = name;
   file.description.dimensions = {format.columns, format.rows, static_cast<int>(layout.slices)};
   place_pages(said, options, file.description);

@@ -51,8 +51,9 @@ struct VolumeFile {
   /// Full light of colors, RGB or RGBA in sRGB: the number of full light; 0: the components are no
   /// colors.
   double largest_color = 0;
-  std::optional<int> step;   ///< the component that a time chose
-  bool reads_parts = false;  ///< whether `read` reads a part of the grid without the rest
+  std::vector<double> times;  ///< of its steps, in the order of the file; empty: it has none
+  std::optional<int> step;    ///< the component that a time chose
+  bool reads_parts = false;   ///< whether `read` reads a part of the grid without the rest
   std::string array;  ///< the one of the file's arrays that this is; empty: they have no names
   std::string space;  ///< that it is placed in, see world_space()
   /// The values of each component by itself. Throws Error.

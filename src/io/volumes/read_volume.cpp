@@ -90,6 +90,14 @@ Volume read_volume(const std::filesystem::path& path, const ReadOptions& options
                   [&](const VolumeFile& file) { return read_chosen(file, options); });
 }
 
+std::vector<double> volume_times(const std::filesystem::path& path, const ReadOptions& options) {
+  ReadOptions quiet = options;
+  quiet.time.reset();
+  quiet.part = {};
+  quiet.note = {};
+  return open_and(path, quiet, [](const VolumeFile& file) { return file.times; });
+}
+
 ColorOutline outline_colors(const std::filesystem::path& path, const ReadOptions& options) {
   return open_and(path, options, [](const VolumeFile& file) {
     if (!(file.largest_color > 0)) return ColorOutline{};

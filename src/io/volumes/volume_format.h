@@ -72,6 +72,10 @@ const VolumeFormat* volume_format_by_name(std::string_view file_name);
 const VolumeFormat& find_volume_format(const std::filesystem::path& path,
                                        const ReadOptions& options);
 
+/// Returns the times of a file's steps in its own order; empty: it has none. Reads no values.
+/// Throws Error as read_volume() does.
+std::vector<double> volume_times(const std::filesystem::path& path, const ReadOptions& options);
+
 /// Headerless data, of any name whose dimensions and type are given.
 extern const VolumeFormat raw_format;
 

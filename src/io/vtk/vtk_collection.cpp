@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
+#include "text/text.h"
 #include "text/xml_scanner.h"
 #include "volumes/volume_format.h"
 #include "vtk_file_kind.h"
@@ -19,6 +22,8 @@ namespace pellucid {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr std::size_t largest_list = std::size_t{1} << 26;  // bytes
 
 bool is_adaptive(const std::string& kind) {
   constexpr std::array<std::string_view, 4> adaptive{"vtkHierarchicalBoxDataSet",
@@ -41,8 +46,7 @@ std::optional<std::string> collection_kind(const fs::path& path) {
 /// Returns the files that the elements DataSet name, as they are named.
 std::vector<std::string> names_in(const fs::path& path) {
   const std::string name = path.string();
-  constexpr std::size_t largest = std::size_t{1} << 26;
-  const std::string text = read_text_file(path, largest);
+  const std::string text = read_text_file(path, largest_list);
   XmlScanner scanner(text, name);
   std::vector<std::string> names;
   while (const std::optional<XmlTag> tag = scanner.next()) {
@@ -53,6 +57,18 @@ std::vector<std::string> names_in(const fs::path& path) {
     names.emplace_back(file->second);
   }
   return names;
+}
+
+/// Returns the number that a text is, and nothing else.
+std::optional<double> number_of(const std::string& text) {
+  const std::string bare(trimmed(text));
+  double number = 0;
+  const char* const end = bare.data() + bare.size();
+  const auto result = std::from_chars(bare.data(), end, number);
+  if (bare.empty() || result.ec != std::errc() || result.ptr != end || !std::isfinite(number)) {
+    return std::nullopt;
+  }
+  return number;
 }
 
 bool is_image(const fs::path& path) {
@@ -100,6 +116,30 @@ bool is_image_collection(const fs::path& path) {
   } catch (const Error&) {
     return false;  // whoever reads it as a mesh says what is wrong
   }
+}
+
+std::vector<ListedStep> steps_of_list(const fs::path& path) {
+  const std::string text = read_text_file(path, largest_list);
+  XmlScanner scanner(text, path.filename().string());
+  std::vector<ListedStep> steps;
+  while (const std::optional<XmlTag> tag = scanner.next()) {
+    if (tag->name != "DataSet" || tag->closes) continue;
+    const auto file = tag->attributes.find("file"), time = tag->attributes.find("timestep");
+    if (file == tag->attributes.end() || file->second.empty()) continue;
+    ListedStep step;
+    step.file = xml_text(file->second);
+    if (time != tag->attributes.end()) {
+      const std::optional<double> number = number_of(std::string(time->second));
+      if (!number) {
+        throw Error("the timestep of " + one_line(step.file) + " is no number; correct the file");
+      }
+      step.time = *number;
+    }
+    steps.push_back(std::move(step));
+  }
+  if (steps.empty()) throw Error("its Collection names no file; it is damaged");
+  std::ranges::stable_sort(steps, {}, &ListedStep::time);
+  return steps;
 }
 
 extern const VolumeFormat image_collection_format{

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Meshes that VTK reads: its XML and legacy files, and Exodus II.
+#include <algorithm>
+#include <cstring>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "legacy_vtk_cells.h"
 #include "legacy_vtk_numbers.h"
@@ -15,6 +19,8 @@
 #include "process/contained.h"
 #include "text/text.h"
 #include "vtk/xml/vtk_xml_check.h"
+#include "vtk_collection.h"
+#include "vtk_file_kind.h"
 #include "vtk_files.h"
 #include "vtk_module.h"
 
@@ -48,6 +54,46 @@ MeshBlocks read_by_vtk(const std::filesystem::path& path, VtkFormat format,
   return *std::move(mesh);
 }
 
+/// Returns the times of a file of XML, without VTK.
+std::vector<double> xml_times(const std::filesystem::path& path) {
+  const std::optional<VtkFileKind> kind = vtk_file_kind(path);
+  try {
+    if (!kind || kind->data != "Collection") return read_vtk_xml(path).times;
+    std::vector<double> times;
+    for (const ListedStep& step : steps_of_list(path)) times.push_back(step.time);
+    return times;
+  } catch (const Error& error) {
+    throw Error(path.string() + ": " + one_line(error.what()));
+  }
+}
+
+/// Asks VTK, in a process of its own.
+std::vector<double> exodus_times(const std::filesystem::path& path) {
+  check_net_cdf_size(path);
+  const std::uintmax_t file_bytes = bytes_of_vtk_files(path);
+  std::vector<double> times;
+  try {
+    check_vtk_module();
+    const ContainedBytes bytes = run_contained_answer(
+        [&](const MakeAnswer& make) {
+          std::vector<double> found;
+          std::string error;
+          exodus_times_module()(path, found, error);
+          if (!error.empty()) throw Error(error);
+          std::ranges::copy(std::as_bytes(std::span(found)),
+                            make(found.size() * sizeof(double) + 1).begin());
+          return true;
+        },
+        file_bytes, memory_for_vtk(file_bytes));
+    if (!bytes) throw Error(vtk_fails);
+    times.resize(bytes.size / sizeof(double));
+    std::memcpy(times.data(), bytes.data.get(), times.size() * sizeof(double));
+  } catch (const Error& error) {
+    throw Error(path.string() + ": " + one_line(error.what()));
+  }
+  return times;
+}
+
 bool has(std::string_view head, std::string_view word) {
   return head.find(word) != std::string_view::npos;
 }
@@ -64,7 +110,8 @@ extern const MeshFormat vtk_xml_mesh_format{
     .read =
         [](const std::filesystem::path& path, const MeshReadOptions& options) {
           return read_by_vtk(path, VtkFormat::xml, options);
-        }};
+        },
+    .times = xml_times};
 
 extern const MeshFormat vtk_legacy_mesh_format{
     .name = "legacy VTK",
@@ -91,6 +138,7 @@ extern const MeshFormat exodus_format{
         [](const std::filesystem::path& path, const MeshReadOptions& options) {
           check_net_cdf_size(path);
           return read_by_vtk(path, VtkFormat::exodus, options);
-        }};
+        },
+    .times = exodus_times};
 
 }  // namespace pellucid

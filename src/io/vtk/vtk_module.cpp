@@ -27,6 +27,12 @@ ReadVolumeWithVtk& vtk_volume_module() {
   return *function;
 }
 
+ReadExodusTimes& exodus_times_module() {
+  static auto* const function =
+      reinterpret_cast<ReadExodusTimes*>(module_function(vtk, read_exodus_times_name));
+  return *function;
+}
+
 void check_vtk_module() {
   module_file(vtk);
 }

@@ -33,6 +33,11 @@ using ReadWithVtk = void(const std::filesystem::path& path, VtkFormat format,
                          VtkAnswer& answer);
 inline constexpr const char* read_with_vtk_name = "pellucid_read_with_vtk_4";
 
+/// Returns the times of the steps of a file of Exodus.
+using ReadExodusTimes = void(const std::filesystem::path& path, std::vector<double>& times,
+                             std::string& error);
+inline constexpr const char* read_exodus_times_name = "pellucid_read_exodus_times_1";
+
 /// An array by its name in the file.
 struct VtkArrayName {
   Centering centering;
@@ -87,6 +92,7 @@ inline constexpr const char* read_volume_with_vtk_name = "pellucid_read_volume_w
 /// Loaded by the first call. Throw Error where the build has no such module or it does not load.
 ReadWithVtk& vtk_module();
 ReadVolumeWithVtk& vtk_volume_module();
+ReadExodusTimes& exodus_times_module();
 /// Throws Error where the build has no such module, and loads nothing.
 void check_vtk_module();
 

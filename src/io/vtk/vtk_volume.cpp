@@ -94,6 +94,7 @@ VolumeFile open_vtk_volume(const std::filesystem::path& path, const ReadOptions&
   file.description = opened.description;
   file.components = opened.components;
   file.array = opened.array;
+  file.times = opened.times;
   file.holds = std::to_string(file.components) + " components (array \"" + file.array + "\")";
   file.reads_parts = opened.reads_parts;
   if (file.reads_parts) {

@@ -82,6 +82,7 @@ void write_opened(const OpenedVtkVolume& opened, const MakeAnswer& make) {
                {"coordinates", d.coordinates},
                {"components", opened.components},
                {"array", of_text(opened.array)},
+               {"times", opened.times},
                {"notes", opened.notes},
                {"type", opened.type},
                {"reads_parts", opened.reads_parts},
@@ -102,6 +103,7 @@ std::optional<OpenedVtkVolume> read_opened(const ContainedBytes& bytes, const st
     head.at("coordinates").get_to(opened.description.coordinates);
     head.at("components").get_to(opened.components);
     opened.array = text_of(head.at("array"));
+    head.at("times").get_to(opened.times);
     head.at("notes").get_to(opened.notes);
     head.at("type").get_to(opened.type);
     head.at("reads_parts").get_to(opened.reads_parts);

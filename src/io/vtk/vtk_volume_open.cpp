@@ -264,6 +264,7 @@ OpenedVtkVolume open_here(const std::filesystem::path& path, const ReadOptions& 
   VtkVolume grid = read_grid(path, {.array = options.array, .time = options.time});
   OpenedVtkVolume opened;
   opened.time = options.time;
+  opened.times = grid.times;
   opened.notes = std::move(grid.notes);
   if (grid.times.size() > 1 && !options.time) opened.notes.push_back(note_of_steps(grid.times));
   opened.description = describe(grid, grid.arrays.front().centering, name);

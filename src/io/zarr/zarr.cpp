@@ -87,9 +87,9 @@ ReadValues variable_reader(const ZarrVariable& variable, const ZarrView& view,
   };
 }
 
-/// Takes the step of the nearest time, or tells which times there are.
-void choose_time(const ZarrChoice& choice, const ReadOptions& options, const std::string& name,
-                 ZarrAxes& axes) {
+/// Takes the step of the nearest time, or tells which times there are. Returns the times.
+std::vector<double> choose_time(const ZarrChoice& choice, const ReadOptions& options,
+                                const std::string& name, ZarrAxes& axes) {
   if (options.time && !axes.time) {
     throw Error(name + ": has no steps in time; leave the time out");
   }
@@ -97,14 +97,17 @@ void choose_time(const ZarrChoice& choice, const ReadOptions& options, const std
     const auto z = axes.view.sides(choice.array)[2];
     refuse_movie(static_cast<std::size_t>(choice.array.shape[*axes.time]), z, options, name);
   }
-  const bool is_told = options.note && axes.time && choice.array.shape[*axes.time] > 1;
-  if (!options.time && !is_told) return;
-  const std::vector<double> times = zarr_times(choice, *axes.time, name);
-  if (!options.time) return options.note(name + ": holds " + times_note(times));
+  if (!axes.time) return {};
+  std::vector<double> times = zarr_times(choice, *axes.time, name);
+  if (!options.time) {
+    if (options.note && times.size() > 1) options.note(name + ": holds " + times_note(times));
+    return times;
+  }
   const std::size_t step = nearest_step(times, options.time);
   if (options.note) options.note(name + ": " + step_note(times, step, *options.time));
   axes.view.at[*axes.time] = static_cast<std::int64_t>(step);
   std::erase(axes.view.components, *axes.time);
+  return times;
 }
 
 /// Returns the names of an image's channels where they are its components; else none.
@@ -163,9 +166,9 @@ VolumeFile open_zarr(const fs::path& path, const ReadOptions& options) {
   refuse_raw_options(options, name);
   ZarrChoice choice = choose_zarr(path, options);
   ZarrAxes axes = zarr_axes(choice, name, options);
-  choose_time(choice, options, name, axes);
-  if (options.note && !choice.array.note.empty()) options.note(name + ": " + choice.array.note);
   VolumeFile file;
+  file.times = choose_time(choice, options, name, axes);
+  if (options.note && !choice.array.note.empty()) options.note(name + ": " + choice.array.note);
   file.description.name = name;
   const std::array<std::int64_t, 3> sides = axes.view.sides(choice.array);
   value_count(sides, name);

@@ -230,11 +230,10 @@ void tell_fill(std::size_t count, const std::vector<std::string>& names, bool di
                        (displaced ? ", and the points are not displaced" : ""));
 }
 
-}  // namespace
-
-void read_exodus(const std::filesystem::path& path, const MeshReadOptions& options,
-                 const VtkMessages& messages, MeshBlocks& mesh) {
-  const auto reader = vtkSmartPointer<vtkExodusIIReader>::New();
+/// Returns a reader that has read the head of a file.
+vtkSmartPointer<vtkExodusIIReader> open_exodus(const std::filesystem::path& path,
+                                               const VtkMessages& messages) {
+  auto reader = vtkSmartPointer<vtkExodusIIReader>::New();
   ex_opts(0);  // else Exodus prints what it finds wrong
   if (reader->CanReadFile(path.c_str()) == 0) {
     throw Error("is no Exodus II file, or is cut off or damaged");
@@ -242,6 +241,25 @@ void read_exodus(const std::filesystem::path& path, const MeshReadOptions& optio
   reader->SetFileName(path.c_str());
   reader->UpdateInformation();
   messages.check();
+  return reader;
+}
+
+/// Returns the times without those that were never written.
+std::vector<double> known_times(const std::vector<double>& times) {
+  std::vector<double> known;
+  std::ranges::copy_if(times, std::back_inserter(known), [](double t) { return t != fill; });
+  return known;
+}
+
+}  // namespace
+
+std::vector<double> exodus_times(const std::filesystem::path& path, const VtkMessages& messages) {
+  return known_times(times_of(*open_exodus(path, messages)));
+}
+
+void read_exodus(const std::filesystem::path& path, const MeshReadOptions& options,
+                 const VtkMessages& messages, MeshBlocks& mesh) {
+  const auto reader = open_exodus(path, messages);
   reader->GenerateObjectIdCellArrayOff();
   for (const int kind : {vtkExodusIIReader::ELEM_BLOCK, vtkExodusIIReader::NODAL}) {
     reader->SetAllArrayStatus(kind, 1);
@@ -251,8 +269,7 @@ void read_exodus(const std::filesystem::path& path, const MeshReadOptions& optio
   }
   mesh.file.format = "Exodus II";
   const std::vector<double> times = times_of(*reader);
-  std::vector<double> known;
-  std::ranges::copy_if(times, std::back_inserter(known), [](double t) { return t != fill; });
+  const std::vector<double> known = known_times(times);
   const std::size_t without_time = times.size() - known.size();
   if (without_time > 0) {
     mesh.file.notes.push_back(std::to_string(without_time) + " of " + std::to_string(times.size()) +

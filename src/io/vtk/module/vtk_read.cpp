@@ -63,3 +63,11 @@ extern "C" __attribute__((visibility("default"))) void pellucid_read_with_vtk_4(
     }
   });
 }
+
+extern "C" __attribute__((visibility("default"))) void pellucid_read_exodus_times_1(
+    const std::filesystem::path& path, std::vector<double>& times, std::string& error) {
+  pellucid::answer(error, "the file may be damaged, or split it", [&] {
+    const pellucid::VtkMessages messages;
+    times = pellucid::exodus_times(path, messages);
+  });
+}

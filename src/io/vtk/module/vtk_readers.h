@@ -25,6 +25,9 @@ void read_legacy(const std::filesystem::path& path, const MeshReadOptions& optio
 void read_exodus(const std::filesystem::path& path, const MeshReadOptions& options,
                  const VtkMessages& messages, MeshBlocks& mesh);
 
+/// Returns the times of its steps that have one.
+std::vector<double> exodus_times(const std::filesystem::path& path, const VtkMessages& messages);
+
 /// Runs the reader at the step that the options ask for, and puts the file's times into `file`.
 /// Throws Error where VTK says one, or a time is asked for where there is none.
 void update(vtkAlgorithm& reader, const MeshReadOptions& options, const VtkMessages& messages,

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Times of a source without its values.
+
+#include <fstream>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "image_files.h"
+#include "pellucid/io/time_steps.h"
+#include "tests/io/arrays/hdf5_files.h"
+#include "tests/io/arrays/net_cdf_files.h"
+#include "tests/io/arrays/zarr_files.h"
+#include "tests/io/vtk/exodus_files.h"
+#include "tests/io/vtk/mesh_files.h"
+
+namespace pellucid::test_source_times {
+namespace {
+
+namespace fs = std::filesystem;
+
+using test::bytes_of;
+using test::contains;
+using test::described_tiff;
+using test::error_of;
+using Times = std::vector<double>;
+
+class SourceTimes : public test::ScratchFolder {
+ protected:
+  static Times field(const fs::path& file, const ReadOptions& options = {}) {
+    FieldSource source;
+    source.file = file;
+    source.options = options;
+    return source_times(source);
+  }
+  static Times mesh(const fs::path& file) {
+    MeshSource source;
+    source.file = file;
+    return source_times(source);
+  }
+};
+
+TEST_F(SourceTimes, FilesWithoutSteps) {
+  EXPECT_EQ(source_times(parse_field_source("builtin:ramp:8")), Times{});
+  EXPECT_EQ(field(write("a.tif", described_tiff(2, "ImageJ=1.53t\nimages=2\nslices=2\n"))),
+            Times{});
+  EXPECT_TRUE(contains(error_of([&] { field(path("none.nc")); }), "none.nc"));
+  EXPECT_TRUE(contains(error_of([&] { mesh(path("none.pvd")); }), "none.pvd"));
+}
+
+TEST_F(SourceTimes, Tiff) {
+  const auto file = write(
+      "a.tif", described_tiff(6, "ImageJ=1.53t\nimages=6\nslices=2\nframes=3\nfinterval=2.5\n"));
+  EXPECT_EQ(field(file), (Times{0, 2.5, 5}));
+  ReadOptions options;
+  options.time = 5;
+  int notes = 0;
+  options.note = [&](const std::string&) { ++notes; };
+  EXPECT_EQ(field(file, options), (Times{0, 2.5, 5}));
+  EXPECT_EQ(notes, 0);
+}
+
+#ifdef PELLUCID_HAVE_NETCDF
+TEST_F(SourceTimes, NetCdf) {
+  test::ClassicFile classic;
+  classic.axes = {{"time", 4}, {"z", 2}, {"y", 2}, {"x", 2}};
+  classic.variables = {{"v", 'f', {"time", "z", "y", "x"}, std::vector<double>(32, 1)},
+                       {"time", 'd', {"time"}, {3, 1, 2, 1}}};
+  EXPECT_EQ(field(write("a.nc", classic.bytes())), (Times{1, 2, 3}));
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  classic.variables[1].values = {none, none, 7, none};
+  EXPECT_EQ(field(write("a.nc", classic.bytes())), Times{7});
+}
+#endif
+
+#ifdef PELLUCID_HAVE_HDF5
+TEST_F(SourceTimes, Hdf5) {
+  {
+    const test::Hdf5Writer file(path("a.h5"));
+    file.add("v", H5T_NATIVE_FLOAT, {3, 2, 2, 2}, std::vector<double>(24, 1));
+    file.attach_labels("v", {"time", "z", "y", "x"});
+    file.add("time", H5T_NATIVE_DOUBLE, {3}, {3, 1, 2});
+    file.attach_scales("v", {"time", "", "", ""});
+  }
+  EXPECT_EQ(field(path("a.h5")), (Times{1, 2, 3}));
+}
+#endif
+
+TEST_F(SourceTimes, Zarr) {
+  test::ZarrStore store;
+  store.shape = store.chunk = {3, 2, 2, 2};
+  store.write_2(path("a.zarr/v"), bytes_of(std::vector<float>(24, 1)), 4);
+  store.shape = store.chunk = {3};
+  store.write_2(path("a.zarr/time"), bytes_of(std::vector<float>{3, 1, 2}), 4);
+  std::ofstream(path("a.zarr/.zgroup")) << "{\"zarr_format\": 2}";
+  std::ofstream(path("a.zarr/time/.zattrs")) << R"({"_ARRAY_DIMENSIONS": ["time"]})";
+  std::ofstream(path("a.zarr/v/.zattrs")) << R"({"_ARRAY_DIMENSIONS": ["time", "z", "y", "x"]})";
+  EXPECT_EQ(field(path("a.zarr")), (Times{1, 2, 3}));
+}
+
+#ifdef PELLUCID_HAVE_VTK
+std::string image_of_steps() {
+  std::string image =
+      "<ImageData WholeExtent=\"0 1 0 1 0 1\" TimeValues=\"3 1 2\">"
+      "<Piece Extent=\"0 1 0 1 0 1\"><PointData Scalars=\"v\">";
+  for (int step = 0; step < 3; ++step) {
+    image += "<DataArray type=\"Float32\" Name=\"v\" TimeStep=\"" + std::to_string(step) +
+             "\" format=\"ascii\">0 0 0 0 0 0 0 0</DataArray>";
+  }
+  return test::xml_file("ImageData", image + "</PointData></Piece></ImageData>");
+}
+
+TEST_F(SourceTimes, VtkXml) {
+  EXPECT_EQ(field(write("a.vti", image_of_steps())), (Times{1, 2, 3}));
+  std::string grid = test::small_vtu();
+  grid.replace(grid.find("<UnstructuredGrid>"), 18, "<UnstructuredGrid TimeValues=\"3 1 2\">");
+  EXPECT_EQ(mesh(write("a.vtu", grid)), (Times{1, 2, 3}));
+  EXPECT_EQ(mesh(write("b.vtu", test::small_vtu())), Times{});
+}
+
+TEST_F(SourceTimes, Collections) {
+  write("m.vtu", test::small_vtu());
+  const auto list = [&](const std::string& name, const std::vector<std::string>& times) {
+    std::string inside = "<Collection>";
+    for (const std::string& time : times) {
+      inside += "<DataSet timestep=\"" + time + "\" file=\"m.vtu\"/>";
+    }
+    return write(name, test::xml_file("Collection", inside + "</Collection>\n"));
+  };
+  EXPECT_EQ(mesh(list("a.pvd", {"3", "1", "2e0", "1"})), (Times{1, 2, 3}));
+  EXPECT_TRUE(contains(error_of([&] {
+                         mesh(list("b.pvd", {"1", "x"}));
+                       }),
+                       "the timestep of m.vtu is no number"));
+  EXPECT_TRUE(contains(error_of([&] { mesh(list("c.pvd", {})); }), "names no file"));
+}
+
+TEST_F(SourceTimes, Exodus) {
+  if (!test::has_exodus) GTEST_SKIP() << "this build does not read Exodus files";
+  test::SmallExodus of;
+  of.steps = of.written_steps = 3;
+  of.write(path("a.e"));
+  EXPECT_EQ(mesh(path("a.e")), (Times{0, 0.5, 1}));
+  of.has_last_time = false;
+  of.write(path("b.e"));
+  EXPECT_EQ(mesh(path("b.e")), (Times{0, 0.5}));
+}
+#endif
+
+}  // namespace
+}  // namespace pellucid::test_source_times
