@@ -15,6 +15,7 @@ struct Command {
 };
 
 Command add_render(CommandLine& app);
+Command add_animate(CommandLine& app);
 Command add_view(CommandLine& app);
 Command add_info(CommandLine& app);
 Command add_evaluate(CommandLine& app);

@@ -24,8 +24,8 @@ Command add_left_out(CommandLine& app, const char* name) {
 template <std::size_t number>
 Command add_left_out(CommandLine& app) {
   static constexpr const char* names[] = {
-      "view",   "info",     "histogram", "suggest", "convert",
-      "export", "evaluate", "compare",   "presets", "transfer-function"};
+      "animate", "view",     "info",    "histogram", "suggest",          "convert",
+      "export",  "evaluate", "compare", "presets",   "transfer-function"};
   return add_left_out(app, names[number]);
 }
 
@@ -35,7 +35,7 @@ std::span<const AddCommand> command_table() {
   static constexpr AddCommand table[] = {add_render,      add_left_out<0>, add_left_out<1>,
                                          add_left_out<2>, add_left_out<3>, add_left_out<4>,
                                          add_left_out<5>, add_left_out<6>, add_left_out<7>,
-                                         add_left_out<8>, add_left_out<9>};
+                                         add_left_out<8>, add_left_out<9>, add_left_out<10>};
   return table;
 }
 

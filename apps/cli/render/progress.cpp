@@ -50,20 +50,24 @@ ProgressLine::~ProgressLine() {
 }
 
 void ProgressLine::show(double share_done) {
-  if (!wanted_) return;
   const int percent = static_cast<int>(100 * std::clamp(share_done, 0.0, 1.0));
-  if (percent == percent_) return;
-  percent_ = percent;
-  std::fputs(fmt::format("\rrendering {:3} %", percent).c_str(), stderr);
+  show(fmt::format("rendering {:3} %", percent));
+}
+
+void ProgressLine::show(const std::string& text) {
+  if (!wanted_ || text == shown_) return;
+  constexpr const char* erase_rest = "\x1b[K";
+  std::fputs(("\r" + text + erase_rest).c_str(), stderr);
   std::fflush(stderr);
+  shown_ = text;
 }
 
 void ProgressLine::clear() {
-  if (percent_ < 0) return;
+  if (shown_.empty()) return;
   constexpr const char* erase_line = "\r\x1b[K";
   std::fputs(erase_line, stderr);
   std::fflush(stderr);
-  percent_ = -1;
+  shown_.clear();
 }
 
 }  // namespace pellucid::cli

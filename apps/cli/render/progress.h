@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 namespace pellucid::cli {
 
 /// Ctrl-C or a request to end.
@@ -22,8 +24,8 @@ class InterruptGuard {
   static void check();
 };
 
-/// "rendering 42 %" on stderr, on one line that is updated and in the end removed; silent where
-/// stderr is not a terminal.
+/// "rendering 42 %", or a text, on stderr, on one line that is updated and in the end removed;
+/// silent where stderr is not a terminal.
 class ProgressLine {
  public:
   explicit ProgressLine(bool wanted);
@@ -32,11 +34,12 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   void show(double share_done);
+  void show(const std::string& text);
   void clear();
 
  private:
   bool wanted_;
-  int percent_ = -1;
+  std::string shown_;
 };
 
 }  // namespace pellucid::cli

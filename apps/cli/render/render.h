@@ -102,6 +102,11 @@ void add_render_options(CommandLine& command, RenderArguments& arguments);
 /// The part of them that says what is seen, and from where.
 void add_scene_options(CommandLine& command, RenderArguments& arguments);
 
+/// The size of the picture, and what is behind and over it.
+void add_picture_options(CommandLine& command, RenderArguments& arguments);
+/// How rays are integrated, and on which machine.
+void add_integration_options(CommandLine& command, RenderArguments& arguments);
+
 /// Gives a file alone a look where nothing says how it is shown, or that of --look; one that has a
 /// function, to print or save it. Throws UsageError.
 void want_look(const RenderArguments& arguments, PreparedScene& prepared);
@@ -144,8 +149,10 @@ void place_camera(const RenderArguments& arguments, PreparedScene& prepared,
                   const CameraFraming& frame);
 /// Does the same in this process, by drafts, which a signal ends. Throws Interrupted too.
 void place_camera(const RenderArguments& arguments, PreparedScene& prepared);
-/// Reads the input and puts the arguments over what it says. Throws Error.
-PreparedScene prepare(const RenderArguments& arguments);
+/// Reads the input and puts the arguments over what it says; `change`, unless it is empty, may
+/// change the request before its data are read. Throws Error.
+PreparedScene prepare(const RenderArguments& arguments,
+                      const std::function<void(SceneRequest&)>& change = {});
 
 /// A picture and what is told of it.
 struct RenderedPicture {

@@ -48,6 +48,8 @@ void add_output_options(CommandLine& command, RenderArguments& arguments) {
                    "Print no progress, report or notes, only errors");
 }
 
+}  // namespace
+
 void add_picture_options(CommandLine& command, RenderArguments& arguments) {
   command
       .add_option("--size", arguments.size,
@@ -147,6 +149,11 @@ void add_integration_options(CommandLine& command, RenderArguments& arguments) {
       ->option_text("DEVICE")
       ->one_of({"cpu", "cuda", "emulated"})
       ->excludes("--reference");
+}
+
+namespace {
+
+void add_rank_options(CommandLine& command, RenderArguments& arguments) {
   command.add_flag(
       "--ranks", arguments.ranks,
       "Render on all ranks of MPI that this program is started on, each with its part of the data: "
@@ -255,6 +262,7 @@ void add_render_options(CommandLine& command, RenderArguments& arguments) {
   add_scene_options(command, arguments);
   add_picture_options(command, arguments);
   add_integration_options(command, arguments);
+  add_rank_options(command, arguments);
   arguments.volume.add_to(command, false);
   arguments.mesh.add_to(command, true);
 }

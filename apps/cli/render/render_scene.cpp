@@ -12,6 +12,7 @@
 #include "arguments/overwriting.h"
 #include "arguments/parse.h"
 #include "pellucid/cpu/threads.h"
+#include "pellucid/io/film.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/io/remake_scene.h"
@@ -467,6 +468,7 @@ SceneRequest request_scene(const RenderArguments& arguments) {
   PreparedScene& prepared = request.prepared;
   prepared.description = describe(arguments, prepared.import_notes);
   SceneDescription& description = prepared.description;
+  resolve_time(description);
   const int threads = arguments.threads > 0 ? arguments.threads : default_thread_count();
   if (arguments.suggests_functions) {
     request.loaded = view::suggest_missing_functions(
@@ -564,8 +566,10 @@ void place_camera(const RenderArguments& arguments, PreparedScene& prepared,
   light_look(arguments, prepared);
 }
 
-PreparedScene prepare(const RenderArguments& arguments) {
+PreparedScene prepare(const RenderArguments& arguments,
+                      const std::function<void(SceneRequest&)>& change) {
   SceneRequest request = request_scene(arguments);
+  if (change) change(request);
   const ParallelFor parallel =
       parallel_for(arguments.threads > 0 ? arguments.threads : default_thread_count());
   std::vector<MeshSource> meshes;

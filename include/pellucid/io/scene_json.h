@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pellucid/io/animation.h"
 #include "pellucid/io/channel_source.h"
 #include "pellucid/io/field_source.h"
 #include "pellucid/io/mesh_source.h"
@@ -84,6 +85,9 @@ struct SceneDescription {
   /// calm_background().
   bool is_transparent = false;
   std::filesystem::path backdrop;  ///< an .exr with depth (Scene::backdrop); may be empty
+  /// Time of all data that have steps and no time of their own: the nearest step is read.
+  std::optional<double> time;
+  std::optional<Animation> animation;
 };
 
 /// Returns what a .png of the scene has behind its data; none: it keeps its transparency.
@@ -134,6 +138,11 @@ std::string transfer_function_to_json(const TransferFunction& transfer_function)
 Camera parse_camera(std::string_view json, const std::string& name);
 /// Returns the bare object. Throws Error if a number is not finite.
 std::string camera_to_json(const Camera& camera);
+
+/// Parses the object under "animation" of a scene. Throws Error like parse_scene().
+Animation parse_animation(std::string_view json, const std::string& name);
+/// Returns the object. Throws Error if a number is not finite.
+std::string animation_to_json(const Animation& animation);
 
 /// Returns the channels that the layer's function uses: the layer's own channels, or its field as
 /// "value", followed by the field's "gradient_magnitude" and "second_derivative" if a Gaussian or a

@@ -8,12 +8,14 @@ pellucid_io_sources(
   LATER
     color_bar.cpp
     exr_file.cpp
+    picture_text.cpp
   LOOPS
     display_bytes.cpp
     exr_file.cpp
     png_file.cpp
   NOT_WEB
     exr_file.cpp
+    picture_text.cpp
     png_file.cpp
   WEB
     no_exr_file.cpp

@@ -26,18 +26,6 @@ std::optional<int> checked_version(const Node& document) {
   return static_cast<int>(number);
 }
 
-Camera camera_from(const Node& node, ImageSize size) {
-  const Camera camera = scene_json::read_fields<Camera>(node);
-  const bool perspective = camera.projection == Projection::perspective;
-  if (const char* other = perspective ? "parallel_scale" : "vertical_angle"; node.has(other)) {
-    node.fail_at(other, perspective
-                            ? "makes no sense in a perspective camera; give \"vertical_angle\""
-                            : "makes no sense in an orthographic camera; give \"parallel_scale\"");
-  }
-  scene_json::checked(node, [&] { make_camera_frame(camera, size); });
-  return camera;
-}
-
 /// Channels are looked up here, where all names are known.
 void read_data(const Node& node, const std::filesystem::path& folder, LayerDescription& layer) {
   constexpr std::array kinds{"field", "channels", "mesh", "labels"};
@@ -136,8 +124,8 @@ std::vector<LayerDescription> read_layers(const Node& document,
     return {layer};
   }
   if (document.has("volumes")) document.fail_at("volumes", "is \"layers\" in version 2");
-  document.expect_object(
-      {"pellucid", "layers", "clip", "lights", "camera", "image", "integration"});
+  document.expect_object({"pellucid", "layers", "clip", "lights", "camera", "image", "integration",
+                          "time", "animation"});
   const Node list = document.at("layers", "give one at least: [{\"field\": {\"file\": ...}}]");
   if (list.array_size() == 0) list.fail("is empty; give one layer at least");
   return scene_json::list_of(list, [&](const Node& node) { return read_layer(node, folder); });
@@ -155,6 +143,18 @@ Node unwrap(const Node& document, std::string_view key,
 }
 
 }  // namespace
+
+Camera scene_json::camera(const Node& node, ImageSize size) {
+  const Camera camera = scene_json::read_fields<Camera>(node);
+  const bool perspective = camera.projection == Projection::perspective;
+  if (const char* other = perspective ? "parallel_scale" : "vertical_angle"; node.has(other)) {
+    node.fail_at(other, perspective
+                            ? "makes no sense in a perspective camera; give \"vertical_angle\""
+                            : "makes no sense in an orthographic camera; give \"parallel_scale\"");
+  }
+  scene_json::checked(node, [&] { make_camera_frame(camera, size); });
+  return camera;
+}
 
 std::optional<Background> shown_background(const SceneDescription& scene) {
   if (scene.is_transparent) return std::nullopt;
@@ -186,10 +186,14 @@ SceneDescription parse_scene(std::string_view json, const std::string& name,
     }
   }
   if (const auto camera = document.find("camera")) {
-    scene.camera = camera_from(*camera, scene.size);
+    scene.camera = scene_json::camera(*camera, scene.size);
   }
   if (const auto integration = document.find("integration")) {
     scene.integration = scene_json::read_fields<Integration>(*integration);
+  }
+  if (const auto time = document.find("time")) scene.time = time->number();
+  if (const auto animation = document.find("animation")) {
+    scene.animation = scene_json::animation(*animation);
   }
   return scene;
 }
@@ -215,7 +219,7 @@ TransferFunctionDescription parse_transfer_function(std::string_view json,
 
 Camera parse_camera(std::string_view json, const std::string& name) {
   const nlohmann::json parsed = scene_json::parse_document(json, name);
-  return camera_from(unwrap(Node(parsed, name), "camera"), {});
+  return scene_json::camera(unwrap(Node(parsed, name), "camera"));
 }
 
 }  // namespace pellucid

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "pellucid/io/film.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/label_table.h"
 #include "pellucid/io/remake_scene.h"
@@ -411,6 +412,11 @@ Scene make_scene(const SceneDescription& description, const ParallelFor& paralle
 Scene remake_scene(const SceneDescription& description,
                    const std::vector<std::optional<Layer>>& loaded, const ParallelFor& parallel,
                    std::vector<MeshSource>* meshes_used) {
+  if (description.time) {
+    SceneDescription at_time = description;
+    resolve_time(at_time);
+    return remake_scene(at_time, loaded, parallel, meshes_used);
+  }
   Scene scene;
   const Wanted wanted{description.integration.tolerance, description.background};
   std::vector<MeshSource> meshes(description.layers.size());

@@ -78,6 +78,9 @@ MultivariateDescription multivariate(const Node& function);
 
 /// Returns the layer's function of several channels; null: it has none.
 const MultivariateDescription* multivariate_of(const LayerDescription& layer);
+/// Reads a camera, and checks it for a picture of this size.
+Camera camera(const Node& node, ImageSize size = {});
+Animation animation(const Node& node);
 std::vector<Light> lights(const Node& list);
 /// The names of channels that these use are not looked up.
 Shading shading(const Node& node);

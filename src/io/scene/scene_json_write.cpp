@@ -434,6 +434,16 @@ void add_look(LayerDescription layer, const std::string& indent, Members& member
   add_list("slices", layer.slices);
 }
 
+/// Returns lines of which all but the first are two columns further right.
+std::string indented(const std::string& text) {
+  std::string made;
+  for (const char c : text) {
+    made += c;
+    if (c == '\n') made += "  ";
+  }
+  return made;
+}
+
 /// Returns whether it is a white head light alone, the default.
 bool are_default(const std::vector<Light>& lights) {
   return lights.size() == 1 && std::holds_alternative<HeadLight>(lights.front().kind) &&
@@ -519,6 +529,8 @@ std::string scene_to_json(const SceneDescription& scene) {
   if (scene.camera) document.add("camera", lines_text(*scene.camera, "  "));
   document.add("image", image.object());
   document.add("integration", lines_text(scene.integration, "  "));
+  if (scene.time) document.add("time", number(*scene.time, "the time"));
+  if (scene.animation) document.add("animation", indented(animation_to_json(*scene.animation)));
   return document.object() + "\n";
 }
 

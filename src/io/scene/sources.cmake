@@ -8,6 +8,7 @@ pellucid_io_sources(
     label_table.cpp
     mesh_source.cpp
     scene_json.cpp
+    scene_json_animation.cpp
     scene_json_change.cpp
     scene_json_complete.cpp
     scene_json_fields.cpp

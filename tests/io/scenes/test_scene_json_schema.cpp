@@ -43,6 +43,9 @@ constexpr const char* beyond_schema[] = {"is below the value of the point before
                                          "but here are channels",
                                          ": clip: ",
                                          "is there twice",
+                                         "camera path: ",
+                                         "is not later than that of the key before it",
+                                         "has more than 1000000 frames",
                                          "stands twice"};
 
 /// Every document that differs from the whole one in one place: a value replaced, a key left out,

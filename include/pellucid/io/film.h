@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pellucid/io/animation.h"
+#include "pellucid/io/scene_json.h"
+
+namespace pellucid {
+
+/// Times of the steps that the data of a scene have, found once for each of their sources.
+class SceneTimes {
+ public:
+  /// Reads what the files say of their times. Throws Error.
+  explicit SceneTimes(const SceneDescription& description);
+
+  /// Returns the times of all data that have no time of their own in the scene, ascending and each
+  /// once; empty: none has steps.
+  const std::vector<double>& all() const noexcept { return all_; }
+  /// Returns those of one layer likewise.
+  std::vector<double> of(std::size_t layer) const;
+  /// Has such data read at a moment: at the step that is nearest to it (of two as near the
+  /// earlier). `description` has the sources of the one that the times are of.
+  void set(SceneDescription& description, double moment) const;
+
+ private:
+  std::vector<std::vector<std::vector<double>>> times_;  ///< of each source of each layer
+  std::vector<double> all_;
+};
+
+/// Has a scene with a "time" read at it: writes the steps into its sources, and takes the key away.
+/// Throws Error if none of them has steps.
+void resolve_time(SceneDescription& description);
+
+/// Returns the film of a scene that has no animation: one frame for each time if its data have
+/// several, at 10 frames per second; else a turntable of 5 s.
+Animation default_animation(const SceneTimes& times);
+
+/// The frames of an animated scene, as descriptions. They are made by the JSON of the scene: tracks
+/// replace or add what their pointers name.
+class Film {
+ public:
+  /// `written`: the scene as its author wrote it, into which the tracks point. `complete`: the same
+  /// after complete_description(), so that what was chosen from the data stays the same in all
+  /// frames; where a track changes a part of it, such as a layer's transfer function, all of this
+  /// part is as written. Makes the description of every frame once, to check it. Throws Error,
+  /// which names the track and its frame.
+  Film(const SceneDescription& written, const SceneDescription& complete,
+       const Animation& animation, SceneTimes times);
+  ~Film();
+  Film(Film&&) noexcept;
+  Film& operator=(Film&&) noexcept;
+
+  int frames() const noexcept { return frames_; }
+  /// Returns the moment of a frame, counted from 0, in seconds of the film.
+  double seconds(int frame) const noexcept { return frame / animation_.fps; }
+  /// Returns the time of the data in a frame; none: it does not change.
+  std::optional<double> time(int frame) const;
+  /// Returns the scene of a frame. It leaves nothing open but what tracks do.
+  SceneDescription description(int frame) const;
+  /// Returns the same as JSON.
+  std::string scene_text(int frame) const;
+
+ private:
+  struct Document;
+
+  Animation animation_;
+  SceneTimes times_;
+  int frames_ = 0;
+  std::unique_ptr<Document> document_;
+  std::optional<CameraPath> path_;
+};
+
+/// Loads the scenes of a film one after the other, and keeps what does not change: layers whose
+/// description stays, with all that renderers have made for them, and data whose sources stay.
+class FrameLoader {
+ public:
+  /// `loaded`: the data of `description`, of which the first frame may keep some.
+  FrameLoader(const SceneDescription& description, const Scene& loaded);
+
+  /// Throws Error.
+  Scene load(const SceneDescription& description, const ParallelFor& parallel = {});
+
+ private:
+  std::vector<std::string> layers_, sources_;  ///< the JSON of the layers, and of their data
+  Scene scene_;
+};
+
+/// Chooses what the scene leaves to its data, such as the function, the surfaces and the range of a
+/// layer whose data have steps, from all of these, or of many from `most_steps` evenly among them,
+/// and writes it into the description. Each of these is read for that. Of volumes every second
+/// value along each axis is looked at; functions of meshes are laid over the range of their values
+/// at all steps. Channels of several variables and labels stay as they are. Returns the layers that
+/// were changed. Throws Error.
+std::vector<std::size_t> choose_for_all_steps(SceneDescription& description,
+                                              const SceneTimes& times,
+                                              const ParallelFor& parallel = {});
+inline constexpr std::size_t most_steps = 12;
+
+}  // namespace pellucid

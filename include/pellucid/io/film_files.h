@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "pellucid/scene/background.h"
+#include "pellucid/scene/image.h"
+
+namespace pellucid {
+
+struct SceneDescription;
+
+/// The pictures of a film on disk: numbered files, or those that a video is made of by FFmpeg. A
+/// picture has what it was made from in its metadata, so that a film that was interrupted goes on
+/// where it ended.
+class FilmFiles {
+ public:
+  /// `path`: a video (.webm: VP9, .mp4: H.264), whose pictures are in a folder beside it until it
+  /// is done, or the name of pictures with a place for their number, counted from 0, as
+  /// "frames/%04d.png" or ".exr", whose folder is made where it is missing. Throws Error if it is
+  /// none of these or cannot be written, or FFmpeg or its encoder is not there.
+  explicit FilmFiles(std::filesystem::path path);
+
+  bool is_video() const noexcept { return !folder_.empty(); }
+  /// Returns the path of a picture, counted from 0.
+  std::filesystem::path picture(int frame) const;
+  /// Returns the largest number of pictures.
+  int most_pictures() const noexcept { return most_; }
+
+  /// Returns whether the picture of a frame is there, whole, and was made from the same.
+  bool has(int frame, const std::string& made_from) const;
+  /// Writes the picture of a frame. A .png is composited over the background, if there is one.
+  /// Throws Error.
+  void write(int frame, const Image& image, const std::string& made_from,
+             const std::optional<Background>& background) const;
+  /// Makes the video of so many pictures, and removes them unless `keeps_pictures`. Does nothing if
+  /// no video is wanted. Throws Error with what FFmpeg says.
+  void finish(int frames, double fps, bool keeps_pictures) const;
+
+ private:
+  std::filesystem::path path_, folder_;  ///< of the pictures of a video; empty: none is wanted
+  std::string before_, after_;           ///< the number in the name of a picture
+  int digits_ = 6, most_ = 0;
+};
+
+/// Returns what says of which data a scene was made: size and time of change of each file.
+std::string data_stamp(const SceneDescription& description);
+
+}  // namespace pellucid

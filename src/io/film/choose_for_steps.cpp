@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What a scene leaves to its data, chosen from all steps of them.
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "pellucid/io/film.h"
+#include "pellucid/scene/defaults.h"
+#include "pellucid/scene/presets.h"
+
+namespace pellucid {
+namespace {
+
+/// Returns most_steps of the times at most, the first and the last among them.
+std::vector<double> chosen(const std::vector<double>& times) {
+  if (times.size() <= most_steps) return times;
+  std::vector<double> made;
+  for (std::size_t i = 0; i < most_steps; ++i) {
+    made.push_back(times[i * (times.size() - 1) / (most_steps - 1)]);
+  }
+  return made;
+}
+
+/// Every second value of several volumes along each axis, one volume above the other, in the box of
+/// the first: distributions and lengths are those of all, and so the functions made from them.
+class PooledVolume {
+ public:
+  void add(const Volume& volume) {
+    if (layers_ == 0) {
+      description_ = volume.description();
+      std::visit([&](const auto& values) { make_empty(values); }, volume.data());
+    }
+    std::visit([&](auto& pooled) { append(volume, pooled); }, values_);
+  }
+
+  Volume take() {
+    const std::array<int, 3> whole = description_.dimensions;
+    description_.coordinates = {};
+    description_.dimensions = {(whole[0] + 1) / 2, (whole[1] + 1) / 2, layers_};
+    for (int a = 0; a < 3; ++a) {
+      const auto axis = static_cast<std::size_t>(a);
+      description_.placement.spacing[a] *=
+          static_cast<double>(whole[axis]) / description_.dimensions[axis];
+    }
+    description_.centering = Centering::cell;
+    return std::visit(
+        [&](auto& values) {
+          using Value = typename std::decay_t<decltype(values)>::value_type;
+          return Volume(description_, VolumeData(DataArray<Value>(std::move(values))));
+        },
+        values_);
+  }
+
+ private:
+  template <class Value>
+  void make_empty(const DataArray<Value>&) {
+    values_ = std::vector<Value>();
+  }
+
+  template <class Value>
+  void append(const Volume& volume, std::vector<Value>& pooled) {
+    const auto [nx, ny, nz] = volume.description().dimensions;
+    if (nx != description_.dimensions[0] || ny != description_.dimensions[1]) return;
+    std::visit(
+        [&](const auto& values) {
+          for (int z = 0; z < nz; z += 2, ++layers_) {
+            for (int y = 0; y < ny; y += 2) {
+              const std::size_t row = (static_cast<std::size_t>(z) * static_cast<std::size_t>(ny) +
+                                       static_cast<std::size_t>(y)) *
+                                      static_cast<std::size_t>(nx);
+              for (int x = 0; x < nx; x += 2) {
+                pooled.push_back(static_cast<Value>(values[row + static_cast<std::size_t>(x)]));
+              }
+            }
+          }
+        },
+        volume.data());
+  }
+
+  Volume::Description description_;
+  int layers_ = 0;
+  std::variant<std::vector<std::uint8_t>, std::vector<std::int8_t>, std::vector<std::uint16_t>,
+               std::vector<std::int16_t>, std::vector<std::uint32_t>, std::vector<std::int32_t>,
+               std::vector<float>, std::vector<double>>
+      values_;
+};
+
+/// Returns whether a layer leaves something to its data: which function, or where it lies.
+bool leaves_open(const LayerDescription& layer) {
+  if (layer.labels || layer.mask || !layer.channels.empty()) return false;
+  if (layer.mesh && layer.mesh->channels.size() > 1) return false;
+  if (!layer.transfer_function) return true;
+  const auto* const preset = std::get_if<PresetDescription>(&*layer.transfer_function);
+  return (preset != nullptr && !preset->range) || layer.function_change.range;
+}
+
+bool takes_look(const LayerDescription& layer) {
+  return layer.look && !layer.transfer_function && !layer.projection && !layer.shows_surfaces();
+}
+
+/// Writes a look as it was chosen into a description.
+void write_look(Look look, LayerDescription& layer) {
+  if (layer.look->chosen) layer.look->chosen(look);
+  if (!layer.look->keeps_shading) layer.shading = look.shading;
+  layer.isosurfaces = std::move(look.isosurfaces);
+  layer.transfer_function = look.transfer_function.points();
+  layer.look.reset();
+  layer.function_change = {};
+}
+
+/// Returns whether there is something to be chosen.
+bool choose(LayerDescription& layer, const Volume& first, const Volume& pooled) {
+  const FunctionChange& change = layer.function_change;
+  if (takes_look(layer)) {
+    WantedLook wanted = *layer.look;
+    Look look = choose_look(first, wanted.name, change);
+    if (look.as_labels) return false;
+    if (wanted.has_function && !look.isosurfaces.empty()) look.name = "haze";
+    const std::string reason = std::move(look.reason);
+    look = choose_look(pooled, look.name, change);
+    look.reason = reason;
+    write_look(std::move(look), layer);
+    return true;
+  }
+  TransferFunction function({{0, 0, {}}});
+  if (!layer.transfer_function) {
+    if (layer.shows_surfaces()) return false;
+    function = layer.projection ? projection_transfer_function(pooled, *layer.projection)
+                                : default_transfer_function(pooled);
+  } else if (const auto* preset = std::get_if<PresetDescription>(&*layer.transfer_function)) {
+    const auto range = change.range ? range_of(change, pooled) : preset->range;
+    function = make_preset(preset->name, pooled, range);
+  } else if (const auto* points =
+                 std::get_if<std::vector<TransferFunction::Point>>(&*layer.transfer_function)) {
+    function = TransferFunction(*points);
+  } else {
+    return false;
+  }
+  layer.transfer_function = changed(function, change, pooled).points();
+  layer.function_change = {};
+  return true;
+}
+
+/// Lays the function of a mesh over the values of all steps: a mesh of all of them there is none.
+void widen(std::array<double, 2>& range, const MeshSource& source, const ParallelFor& parallel) {
+  const LoadedMesh loaded = load_mesh(source, parallel);
+  const VolumeStatistics& values = loaded.mesh->statistics(0);
+  if (values.finite == 0) return;
+  range = {std::min(range[0], values.minimum), std::max(range[1], values.maximum)};
+}
+
+}  // namespace
+
+std::vector<std::size_t> choose_for_all_steps(SceneDescription& description,
+                                              const SceneTimes& times,
+                                              const ParallelFor& parallel) {
+  std::vector<std::size_t> changed_layers;
+  for (std::size_t i = 0; i < description.layers.size(); ++i) {
+    LayerDescription& layer = description.layers[i];
+    const std::vector<double> steps = chosen(times.of(i));
+    if (steps.size() < 2 || !leaves_open(layer)) continue;
+    if (layer.mesh) {
+      if (layer.function_change.range) continue;
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      std::array<double, 2> range{infinity, -infinity};
+      MeshSource source = *layer.mesh;
+      for (const double step : steps) {
+        source.options.time = step;
+        widen(range, source, parallel);
+      }
+      if (!(range[0] < range[1])) continue;
+      layer.function_change.range = RangeEnds{RangeEnd{range[0]}, RangeEnd{range[1]}};
+      changed_layers.push_back(i);
+      continue;
+    }
+    FieldSource source = layer.field;
+    std::shared_ptr<const Volume> first;
+    PooledVolume pooled;
+    for (const double step : steps) {
+      source.options.time = step;
+      const auto volume = std::make_shared<const Volume>(load_field(source));
+      pooled.add(*volume);
+      if (!first) first = volume;
+    }
+    if (choose(layer, *first, pooled.take())) changed_layers.push_back(i);
+  }
+  return changed_layers;
+}
+
+}  // namespace pellucid

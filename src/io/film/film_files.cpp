@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pellucid/io/film_files.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+#include "images/picture_text.h"
+#include "pellucid/io/image_files.h"
+#include "pellucid/io/scene_json.h"
+#include "pellucid/scene/error.h"
+#include "video.h"
+
+namespace pellucid {
+namespace {
+
+constexpr const char* made_from_key = "pellucid.made_from";
+
+/// The place of the number in a name: %d or %04d.
+struct NumberPlace {
+  std::size_t begin = 0, end = 0;
+  int digits = 1;
+};
+
+std::optional<NumberPlace> number_place(const std::string& name) {
+  const std::size_t begin = name.find('%');
+  if (begin == std::string::npos || name.find('%', begin + 1) != std::string::npos) return {};
+  std::size_t end = begin + 1;
+  NumberPlace place{begin, 0, 1};
+  if (name[end] == '0' && name[end + 1] >= '1' && name[end + 1] <= '9') {
+    place.digits = name[end + 1] - '0';
+    end += 2;
+  }
+  if (end >= name.size() || name[end] != 'd') return {};
+  place.end = end + 1;
+  return place;
+}
+
+}  // namespace
+
+FilmFiles::FilmFiles(std::filesystem::path path) : path_(std::move(path)) {
+  const std::string name = path_.filename().string(), extension = path_.extension().string();
+  if (is_video_extension(extension)) {
+    check_writable(path_);
+    check_video(path_);
+    folder_ = path_;
+    folder_ += ".frames";
+    after_ = ".png";
+  } else {
+    const bool is_picture = extension == ".png" || extension == ".exr";
+    const auto place = is_picture ? number_place(name) : std::nullopt;
+    if (!place) {
+      throw Error(path_.string() +
+                  ": cannot be a film; give a name that ends in .webm or .mp4, or one of pictures "
+                  "with a place for their number, as frames/%04d.png");
+    }
+    before_ = name.substr(0, place->begin);
+    after_ = name.substr(place->end);
+    digits_ = place->digits;
+  }
+  most_ = 1'000'000;
+  const std::filesystem::path folder = is_video() ? folder_ : path_.parent_path();
+  // The folder is made with its first picture, so that a film that fails leaves none.
+  std::filesystem::path missing;
+  for (std::filesystem::path at = folder; !at.empty() && !std::filesystem::exists(at);
+       at = at.parent_path()) {
+    missing = at;
+  }
+  check_writable(missing.empty() ? picture(0) : missing);
+}
+
+std::filesystem::path FilmFiles::picture(int frame) const {
+  std::string number = std::to_string(frame);
+  const auto digits = static_cast<std::size_t>(digits_);
+  if (number.size() < digits) number.insert(0, digits - number.size(), '0');
+  return (is_video() ? folder_ : path_.parent_path()) / (before_ + number + after_);
+}
+
+bool FilmFiles::has(int frame, const std::string& made_from) const {
+  const std::filesystem::path path = picture(frame);
+  std::error_code failure;
+  if (!std::filesystem::is_regular_file(path, failure)) return false;
+  const auto text = picture_text(path, made_from_key);
+  return text && *text == made_from;
+}
+
+void FilmFiles::write(int frame, const Image& image, const std::string& made_from,
+                      const std::optional<Background>& background) const {
+  Image stamped = image;
+  stamped.metadata[made_from_key] = made_from;
+  const std::filesystem::path path = picture(frame);
+  if (std::error_code failure; path.has_parent_path()) {
+    std::filesystem::create_directories(path.parent_path(), failure);
+    if (failure) {
+      throw Error(path.parent_path().string() + ": cannot make the folder: " + failure.message());
+    }
+  }
+  if (path.extension() == ".exr") {
+    write_exr(stamped, path);
+  } else {
+    write_png(stamped, path, background);
+  }
+}
+
+void FilmFiles::finish(int frames, double fps, bool keeps_pictures) const {
+  if (!is_video()) return;
+  make_video(folder_, digits_, frames, fps, path_);
+  if (keeps_pictures) return;
+  std::error_code ignored;  // pictures that stay do no harm
+  for (int frame = 0; frame < frames; ++frame) std::filesystem::remove(picture(frame), ignored);
+  std::filesystem::remove(folder_, ignored);
+}
+
+std::string data_stamp(const SceneDescription& description) {
+  std::string stamp;
+  SceneDescription scene = description;
+  visit_paths(scene, [&](const std::filesystem::path& path) {
+    if (path.empty()) return;
+    std::error_code failure;
+    const auto changed = std::filesystem::last_write_time(path, failure);
+    if (failure) return;
+    const auto size = std::filesystem::is_regular_file(path, failure)
+                          ? std::filesystem::file_size(path, failure)
+                          : 0;
+    stamp += path.string() + " " + std::to_string(size) + " " +
+             std::to_string(changed.time_since_epoch().count()) + "\n";
+  });
+  return stamp;
+}
+
+}  // namespace pellucid

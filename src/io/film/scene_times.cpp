@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "pellucid/io/film.h"
+#include "pellucid/io/time_steps.h"
+#include "pellucid/scene/error.h"
+
+namespace pellucid {
+namespace {
+
+/// Calls visit(source, time) with each source of a layer that is used, and its own time.
+template <class Visit>
+void visit_timed(LayerDescription& layer, const Visit& visit) {
+  visit_sources(layer, [&](FieldSource& field) {
+    const bool is_used =
+        &field != &layer.field || !(layer.mesh || layer.labels || !layer.channels.empty());
+    if (is_used && has_source(field) && field.builtin.empty()) visit(field, field.options.time);
+  });
+  if (layer.mesh && layer.mesh->file != array_in_memory)
+    visit(*layer.mesh, layer.mesh->options.time);
+}
+
+/// Returns the time that is nearest to a moment, of two as near the earlier.
+double nearest(const std::vector<double>& times, double moment) {
+  return *std::ranges::min_element(
+      times, {}, [&](double time) { return std::pair(std::abs(time - moment), time); });
+}
+
+void sort_once(std::vector<double>& times) {
+  std::ranges::sort(times);
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+}
+
+}  // namespace
+
+SceneTimes::SceneTimes(const SceneDescription& description) {
+  SceneDescription scene = description;
+  times_.resize(scene.layers.size());
+  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    visit_timed(scene.layers[i], [&](const auto& source, const std::optional<double>& time) {
+      times_[i].push_back(time ? std::vector<double>() : source_times(source));
+      all_.insert(all_.end(), times_[i].back().begin(), times_[i].back().end());
+    });
+  }
+  sort_once(all_);
+}
+
+std::vector<double> SceneTimes::of(std::size_t layer) const {
+  std::vector<double> times;
+  for (const auto& each : times_[layer]) times.insert(times.end(), each.begin(), each.end());
+  sort_once(times);
+  return times;
+}
+
+void SceneTimes::set(SceneDescription& description, double moment) const {
+  for (std::size_t i = 0; i < times_.size(); ++i) {
+    auto times = times_[i].begin();
+    visit_timed(description.layers[i], [&](auto&, std::optional<double>& time) {
+      if (!times->empty()) time = nearest(*times, moment);
+      ++times;
+    });
+  }
+}
+
+void resolve_time(SceneDescription& description) {
+  if (!description.time) return;
+  const SceneTimes times(description);
+  if (times.all().empty()) {
+    throw Error(
+        "scene: \"time\" is given, but no data of it have steps without a time of their own");
+  }
+  times.set(description, *description.time);
+  description.time.reset();
+}
+
+}  // namespace pellucid

@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: Apache-2.0
+pellucid_io_sources(
+  SOURCES
+    animation.cpp
+    scene_times.cpp
+  LATER
+    choose_for_steps.cpp
+    film.cpp
+    film_files.cpp
+    video.cpp
+  NOT_WEB
+    film_files.cpp
+    video.cpp)

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "video.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <string>
+#include <vector>
+
+#include "pellucid/io/internal/atomic_file.h"
+#include "pellucid/scene/error.h"
+#include "text/printable.h"
+
+extern char** environ;
+
+namespace pellucid {
+namespace {
+
+/// How a process ended: its status, -1 if it could not be started, and what it wrote to stderr.
+struct Outcome {
+  int status = -1;
+  std::string said;
+};
+
+/// Runs ffmpeg in a folder and waits for it.
+Outcome run_ffmpeg(std::vector<std::string> arguments, const std::filesystem::path& folder) {
+  arguments.insert(arguments.begin(), {"ffmpeg", "-nostdin", "-hide_banner", "-v", "error"});
+  std::vector<char*> words;
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  words.push_back(nullptr);
+
+  std::array<int, 2> pipe_ends{};
+  if (pipe2(pipe_ends.data(), O_CLOEXEC) != 0) return {};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], STDERR_FILENO);
+  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  pid_t process = 0;
+  const int failure = posix_spawnp(&process, "ffmpeg", &actions, nullptr, words.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(pipe_ends[1]);
+
+  Outcome outcome;
+  std::array<char, 1024> part{};
+  constexpr std::size_t most = 4096;
+  while (failure == 0) {
+    const ssize_t count = read(pipe_ends[0], part.data(), part.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    if (outcome.said.size() < most) {
+      outcome.said.append(part.data(), static_cast<std::size_t>(count));
+    }
+  }
+  close(pipe_ends[0]);
+  if (failure != 0) return outcome;
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+  return outcome;
+}
+
+/// Returns the first line of what it said.
+std::string first_line(const Outcome& outcome) {
+  const std::string line = outcome.said.substr(0, outcome.said.find('\n'));
+  return line.empty() ? "it gave no reason" : printable(line);
+}
+
+/// Returns how a video of this name is encoded, its container last.
+std::vector<std::string> encoding_of(const std::filesystem::path& path) {
+  if (path.extension() == ".webm") {
+    return {"-c:v", "libvpx-vp9", "-crf", "18", "-b:v", "0", "-row-mt", "1", "-f", "webm"};
+  }
+  return {"-c:v", "libx264", "-crf", "16", "-movflags", "+faststart", "-f", "mp4"};
+}
+
+}  // namespace
+
+bool is_video_extension(const std::string& extension) {
+  return extension == ".webm" || extension == ".mp4";
+}
+
+void check_video(const std::filesystem::path& path) {
+  std::vector<std::string> arguments{"-f", "lavfi", "-i", "color=size=64x64:duration=0.1"};
+  const std::vector<std::string> encoding = encoding_of(path);
+  arguments.insert(arguments.end(), encoding.begin(), encoding.end() - 2);
+  arguments.insert(arguments.end(), {"-f", "null", "-"});
+  const Outcome outcome = run_ffmpeg(std::move(arguments), ".");
+  constexpr const char* otherwise = "; or give a name of pictures, as frames/%04d.png";
+  if (outcome.status == -1 || outcome.status == 127) {
+    throw Error(path.string() +
+                ": videos are made by the program ffmpeg, which was not found; "
+                "install it (Debian: ffmpeg)" +
+                otherwise);
+  }
+  if (outcome.status != 0) {
+    throw Error(path.string() + ": ffmpeg cannot encode it: " + first_line(outcome) + otherwise);
+  }
+}
+
+void make_video(const std::filesystem::path& folder, int digits, int frames, double fps,
+                const std::filesystem::path& path) {
+  AtomicFile file(path);
+  const std::string rate = std::to_string(fps);
+  // The signals of the pictures are sRGB in full range; players assume BT.709 in limited range.
+  std::vector<std::string> arguments{
+      "-y",
+      "-f",
+      "image2",
+      "-framerate",
+      rate,
+      "-start_number",
+      "0",
+      "-i",
+      "%0" + std::to_string(digits) + "d.png",
+      "-frames:v",
+      std::to_string(frames),
+      "-vf",
+      "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,"
+      "pad=ceil(iw/2)*2:ceil(ih/2)*2,format=yuv420p",
+      "-color_primaries",
+      "bt709",
+      "-color_trc",
+      "iec61966-2-1",
+      "-colorspace",
+      "bt709",
+      "-color_range",
+      "tv",
+      "-fflags",
+      "+bitexact",
+      "-flags:v",
+      "+bitexact",
+      "-map_metadata",
+      "-1"};
+  const std::vector<std::string> encoding = encoding_of(path);
+  arguments.insert(arguments.end(), encoding.begin(), encoding.end());
+  // With the protocol's name a colon in a path is no protocol.
+  arguments.push_back("file:" + std::filesystem::absolute(file.temporary_path()).string());
+  const Outcome outcome = run_ffmpeg(std::move(arguments), folder);
+  if (outcome.status != 0) {
+    throw Error(path.string() + ": ffmpeg failed: " + first_line(outcome) +
+                "; the pictures are in " + folder.string());
+  }
+  file.commit();
+}
+
+}  // namespace pellucid

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace pellucid {
+
+/// Returns whether videos have this extension: ".webm" or ".mp4".
+bool is_video_extension(const std::string& extension);
+
+/// Throws Error if the program ffmpeg is not there, or cannot encode a video of this name.
+void check_video(const std::filesystem::path& path);
+
+/// Makes a video of pictures "000000.png" … in a folder, by FFmpeg, which is a process of its own.
+/// A row or column is added where a size is odd. Equal pictures make an equal file. Throws Error
+/// with the first line of what it says.
+void make_video(const std::filesystem::path& folder, int digits, int frames, double fps,
+                const std::filesystem::path& path);
+
+}  // namespace pellucid

@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Films: pellucid animate."""
+
+import json
+import math
+import os
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from program import PROGRAM, ProgramTest, pixel, png, png_texts
+
+FFMPEG = shutil.which("ffmpeg")
+TIMES = [0.0, 0.5, 2.0, 4.0]
+
+
+def steps(times, values):
+    """A .vti of 4 x 4 x 4 points at some times; its values at each are a list, taken in turn."""
+    arrays = "".join(
+        f'<DataArray type="Float32" Name="a" format="ascii" TimeStep="{i}">'
+        + " ".join(str(each[k % len(each)]) for k in range(64)) + "</DataArray>"
+        for i, each in enumerate(values))
+    return ('<VTKFile type="ImageData"><ImageData WholeExtent="0 3 0 3 0 3" Origin="0 0 0" '
+            f'Spacing="1 1 1" TimeValues="{" ".join(map(str, times))}">'
+            '<Piece Extent="0 3 0 3 0 3"><PointData Scalars="a">' + arrays
+            + '</PointData></Piece></ImageData></VTKFile>').encode()
+
+
+class Animate(ProgramTest):
+    def scene(self, animation, **more):
+        scene = {"layers": [{"field": {"builtin": "shells", "points": 16},
+                             "isosurfaces": [{"value": 0.5}], "shading": {}}],
+                 "image": {"width": 24, "height": 24}, "animation": animation, **more}
+        self.write("scene.json", json.dumps(scene).encode())
+        return scene
+
+    def frames(self, folder="f"):
+        return sorted(os.listdir(self.path(folder)))
+
+    def note(self, *arguments):
+        """Runs, expects exit code 0 and gives stderr."""
+        result = self.run_program(*arguments)
+        self.assertEqual(result.returncode, 0, result.stderr.decode(errors="replace"))
+        return result.stderr.decode()
+
+    def picture(self, name):
+        return png(self.read(name))
+
+    def test_a_file_alone_is_a_turntable(self):
+        self.succeed("animate", "builtin:shells:16", "-o", "f/%02d.png", "--size", "16",
+                     "--frames", "4")
+        self.assertEqual(self.frames(), ["00.png", "01.png", "02.png", "03.png"])
+        # The first frame is the still picture; a turn of a quarter is that of --azimuth.
+        self.succeed("render", "builtin:shells:16", "-o", "o.png", "--size", "16")
+        self.assertEqual(self.picture("f/00.png"), self.picture("o.png"))
+
+    def test_a_turntable_is_the_azimuth(self):
+        camera = {"position": [4, -1, 2], "focal_point": [0, 0, 0], "up": [0, 0, 1]}
+        self.scene({"seconds": 1, "fps": 8, "turntable": {}}, camera=camera)
+        self.succeed("animate", "scene.json", "-o", "f/%d.exr")
+        for frame in (0, 3, 7):
+            self.succeed("render", "scene.json", "-o", "o.exr", "--azimuth", str(45 * frame))
+            self.succeed("compare", f"f/{frame}.exr", "o.exr", "--tolerance", "1e-5")
+
+    def test_each_frame_is_the_picture_of_its_scene(self):
+        camera = {"position": [4, -1, 2], "focal_point": [0, 0, 0], "up": [0, 0, 1]}
+        scene = self.scene(
+            {"seconds": 1, "fps": 4, "tracks": [
+                {"target": "/layers/0/isosurfaces/0/value",
+                 "keys": [{"at": 0, "value": 0.2}, {"at": 1, "value": 0.6}]},
+                {"target": "/camera/vertical_angle", "easing": "smooth",
+                 "keys": [{"at": 0, "value": 20}, {"at": 1, "value": 40}]},
+                {"target": "/layers/0/visible", "easing": "hold",
+                 "keys": [{"at": 0, "value": True}, {"at": 0.75, "value": False}]}]},
+            camera=camera)
+        self.succeed("animate", "scene.json", "-o", "f/%d.exr")
+        for frame, (value, angle) in enumerate([(0.2, 20), (0.3, 23.125), (0.4, 30)]):
+            scene["layers"][0]["isosurfaces"][0]["value"] = value
+            scene["camera"]["vertical_angle"] = angle
+            self.write("still.json", json.dumps(scene).encode())
+            self.succeed("render", "still.json", "-o", "o.exr")
+            self.succeed("compare", f"f/{frame}.exr", "o.exr", "--tolerance", "1e-12")
+        scene["layers"][0]["visible"] = False
+        self.write("still.json", json.dumps(scene).encode())
+        self.succeed("render", "still.json", "-o", "o.exr")
+        self.succeed("compare", "f/3.exr", "o.exr", "--tolerance", "1e-12")
+
+    def test_frames_that_are_there_are_kept(self):
+        arguments = ("animate", "builtin:shells:16", "-o", "f/%d.png", "--size", "16", "--frames",
+                     "4")
+        self.succeed(*arguments)
+        whole = {name: self.read("f/" + name) for name in self.frames()}
+        os.utime(self.path("f/1.png"), (1, 1))
+        for name, damage in (("0.png", lambda b: b[:len(b) // 2]), ("2.png", lambda b: b""),
+                             ("3.png", lambda b: b[:-30] + bytes([b[-30] ^ 1]) + b[-29:])):
+            self.write("f/" + name, damage(whole[name]))
+        note = self.note(*arguments)
+        self.assertIn("1 were there", note)
+        self.assertEqual({name: self.read("f/" + name) for name in self.frames()}, whole)
+        self.assertEqual(os.stat(self.path("f/1.png")).st_mtime, 1)
+        # Of another film none is.
+        note = self.note(*arguments, "--tolerance", "1/64")
+        self.assertNotIn("were there", note)
+        self.assertNotEqual(os.stat(self.path("f/1.png")).st_mtime, 1)
+
+    def test_a_film_that_was_killed_goes_on(self):
+        arguments = ["animate", "builtin:shells:32", "--frames", "30", "--size", "64", "-q", "-o"]
+        self.succeed(*arguments, "whole/%02d.png")
+        with subprocess.Popen([PROGRAM, *arguments, "f/%02d.png"], cwd=self.path("")) as process:
+            limit = time.monotonic() + 60
+            while time.monotonic() < limit:
+                if os.path.exists(self.path("f/03.png")):
+                    break
+                time.sleep(0.01)
+            process.send_signal(signal.SIGKILL)
+        self.succeed(*arguments, "f/%02d.png")
+        for name in self.frames("whole"):
+            self.assertEqual(self.read("f/" + name), self.read("whole/" + name), name)
+
+    def test_parts_make_the_same_frames(self):
+        arguments = ("animate", "builtin:shells:16", "--size", "16", "--frames", "5", "-q", "-o")
+        self.succeed(*arguments, "whole/%d.png")
+        self.succeed(*arguments, "f/%d.png", "--part", "2/2")
+        self.assertEqual(self.frames(), ["1.png", "3.png"])
+        self.succeed(*arguments, "f/%d.png", "--part", "1/2")
+        for name in self.frames("whole"):
+            self.assertEqual(self.read("f/" + name), self.read("whole/" + name), name)
+        for part in ("0/2", "3/2", "1", "1/2/3", "a/b"):
+            self.fail_with("expected K/N", *arguments, "f/%d.png", "--part", part, code=2)
+
+    def test_steps_in_time(self):
+        # Out of order in the file; the values of a step are all the same.
+        order, values = [2, 0, 3, 1], [1, 2, 8, 4]
+        self.write("run.vti", steps([TIMES[i] for i in order], [[values[i]] for i in order]))
+        function = {"points": [{"value": 0, "extinction": 0, "color": [1, 1, 1]},
+                               {"value": 8, "extinction": 0.8, "color": [1, 1, 1]}]}
+        self.write("tf.json", json.dumps(function).encode())
+        note = self.note("animate", "run.vti", "--tf", "tf.json", "--size", "9", "--view",
+                         "front", "--background", "transparent", "-o", "f/%d.png")
+        self.assertIn("4 frames, 0.4 s", note)
+        # Through the middle of a box of 3: 1 - exp(-3 · 0.1 · value).
+        for i, value in enumerate(values):
+            alpha = pixel(self.picture(f"f/{i}.png"), 4, 4)[3] / 255
+            self.assertAlmostEqual(alpha, 1 - math.exp(-0.3 * value), delta=0.0045)
+
+    def test_one_function_for_all_steps(self):
+        self.write("run.vti", steps(TIMES, [[value + k / 63 for k in range(64)]
+                                            for value in (1, 2, 8, 4)]))
+        self.succeed("animate", "run.vti", "--look", "haze", "--size", "9", "-o", "f/%d.png")
+        functions = {png_texts(self.read(f"f/{i}.png"))["pellucid.transfer_function"]
+                     for i in range(4)}
+        self.assertEqual(len(functions), 1)
+        last = json.loads(functions.pop())["points"][-1]["value"]
+        self.assertGreater(last, 7)  # the third step's, not the first one's
+
+    def test_time_of_a_scene(self):
+        self.write("run.vti", steps([0, 3], [[1], [8]]))
+        scene = {"layers": [{"field": {"file": "run.vti"}, "transfer_function": {"points": [
+            {"value": 0, "extinction": 0, "color": [1, 1, 1]},
+            {"value": 8, "extinction": 0.8, "color": [1, 1, 1]}]}}],
+            "image": {"width": 8, "height": 8}, "time": 2.9}
+        self.write("scene.json", json.dumps(scene).encode())
+        self.succeed("render", "scene.json", "-o", "a.exr", "--save-scene", "saved.json")
+        saved = json.loads(self.read("saved.json"))
+        self.assertEqual(saved["layers"][0]["field"]["time"], 3)
+        self.assertNotIn("time", saved)
+        scene["layers"][0]["field"] = {"builtin": "shells"}
+        self.write("scene.json", json.dumps(scene).encode())
+        self.fail_with('"time" is given, but no data', "render", "scene.json", "-o", "a.exr")
+
+    def test_what_is_no_film(self):
+        source = "builtin:shells:16"
+        for name in ("o.png", "o.gif", "o%d%d.png", "o%s.png", "o%5d.png", "o.webm.txt"):
+            self.fail_with("cannot be a film", "animate", source, "-o", name)
+        self.fail_with("nothing to write", "animate", source, code=2)
+        self.fail_with("no input", "animate", "-o", "o%d.png", code=2)
+        self.fail_with("is a share of one picture", "animate", source, "-o", "o%d.png",
+                       "--tolerance", "1%", code=2)
+        self.fail_with("expected FIRST:LAST", "animate", source, "-o", "o%d.png", "--times", "3",
+                       code=2)
+        self.fail_with("no data of the scene have steps", "animate", source, "-o", "o%d.png",
+                       "--times", "0:1")
+        for option, value in (("--fps", "0"), ("--seconds", "-1"), ("--turns", "nan")):
+            self.fail_with("expected a number", "animate", source, "-o", "o%d.png", option, value,
+                           code=2)
+        for target, words in (
+                ("/layers/1/visible", "has 1 elements, counted from 0"),
+                ("/layers/0", "whole layers"), ("/image/width", "the size of the film"),
+                ("/layers/0/isosurfaces/0/valu", "unknown key"), ("layers", "no JSON pointer"),
+                ("/camera~2", "a ~ that neither"), ("/animation/fps", "the same in all frames"),
+                ("/layers/0/isosurfaces/0/value/x", "is a single value")):
+            self.scene({"seconds": 1, "fps": 2, "tracks": [
+                {"target": target, "keys": [{"at": 0, "value": 1}]}]})
+            self.fail_with(words, "animate", "scene.json", "-o", "o%d.png")
+        # A key that no frame reaches is looked at as well.
+        self.scene({"seconds": 1, "fps": 2, "tracks": [
+            {"target": "/layers/0/isosurfaces/0/value",
+             "keys": [{"at": 0, "value": 1}, {"at": 1, "value": "high"}]}]})
+        self.fail_with("at 1.0 s: /layers/0/isosurfaces/0/value", "animate", "scene.json", "-o",
+                       "o%d.png")
+        self.assertEqual(sorted(self.files()), ["scene.json"])
+
+    def test_without_ffmpeg(self):
+        result = self.run_program("animate", "builtin:shells:16", "-o", "o.webm",
+                                  env={**os.environ, "PATH": "/nowhere"})
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(b"ffmpeg, which was not found", result.stderr)
+        self.assertEqual(self.files(), [])
+
+    @unittest.skipUnless(FFMPEG, "ffmpeg is not installed: no video is made")
+    def test_videos(self):
+        # One color in all of the picture, which the video keeps but for its own rounding.
+        scene = {"layers": [{"field": {"builtin": "constant", "points": 8}, "transfer_function": {
+            "points": [{"value": 0, "extinction": 0, "color": [0, 0, 0]}]}}],
+            "camera": {"position": [4, 0, 0], "focal_point": [0, 0, 0], "up": [0, 0, 1]},
+            "image": {"width": 33, "height": 20, "background": [0.6, 0.2, 0.05]},
+            "animation": {"seconds": 1, "fps": 5}}
+        self.write("a b%.json", json.dumps(scene).encode())
+        for name in ("a:b 100%.webm", "-o.mp4"):
+            self.succeed("animate", "a b%.json", f"--output={name}", "-q")
+            first = self.read(name)
+            raw = subprocess.run(
+                [FFMPEG, "-v", "error", "-i", "file:" + name, "-f", "rawvideo", "-pix_fmt",
+                 "rgb24", "-"], cwd=self.path(""), capture_output=True, check=True).stdout
+            self.assertEqual(len(raw), 5 * 34 * 20 * 3, name)  # a column more: sizes are even
+            for channel, linear in enumerate((0.6, 0.2, 0.05)):
+                signal_ = 1.055 * linear ** (1 / 2.4) - 0.055
+                self.assertAlmostEqual(raw[(5 * 34 + 9) * 3 + channel], 255 * signal_, delta=4)
+            self.assertFalse(os.path.exists(self.path(name + ".frames")))
+            os.remove(self.path(name))
+            self.succeed("animate", "a b%.json", f"--output={name}", "-q", "--keep-frames")
+            self.assertEqual(self.read(name), first, "two runs differ")
+            self.assertEqual(len(os.listdir(self.path(name + ".frames"))), 5)
+
+
+if __name__ == "__main__":
+    unittest.main()
