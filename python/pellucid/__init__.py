@@ -27,6 +27,7 @@ from ._pellucid import (Cancelled, Channels, Error, Frame, Gaussians, GradientOp
                         read_image, read_mesh, read_volume, render_reference, srgb_to_linear,
                         suggest, suggest_boundaries, view_camera)
 from ._colormaps import from_colormap
+from ._films import animate, frames
 from ._image import Comparison
 from ._meshes import mesh_of
 from ._ranks import render_on_ranks
@@ -43,10 +44,10 @@ __all__ = [
     "HeadLight", "Image", "ImportedTransferFunction", "Integration", "Isosurface", "LabelMask",
     "LabelTable", "LabelVolume", "Layer", "Light", "Mesh", "Note", "OpacityTable", "PointLight",
     "Preset", "Renderer", "Scene", "Shading", "Slice", "TransferFunction", "Viewer", "Volume",
-    "__version__",
+    "__version__", "animate",
     "builtin_field", "color_map", "color_map_names", "default_camera",
     "default_transfer_function", "dicom_series", "export",
-    "export_transfer_function", "from_colormap", "histogram", "import_transfer_function",
+    "export_transfer_function", "frames", "from_colormap", "histogram", "import_transfer_function",
     "integrate", "label_count", "linear_to_srgb", "load_scene", "look", "looks",
     "make_preset", "mesh_of", "presets",
     "projection_transfer_function", "read", "read_image", "read_mesh", "read_volume", "render",

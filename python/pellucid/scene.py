@@ -333,6 +333,9 @@ class Scene:
     integration: Integration = field(default_factory=Integration)
     backdrop: Any = None
     """An Image with depth, as large as `size`: rays end at it. Or None."""
+    animation: Optional[dict] = None
+    """What changes in a film, as the key "animation" of a scene file says
+    (docs/reference/scene.md); for frames() and animate()."""
 
     def __post_init__(self) -> None:
         if not isinstance(self.layers, (list, tuple)):

@@ -57,6 +57,7 @@ void bind_foreign_functions(py::module_& module);
 void bind_histograms(py::module_& module);
 void bind_looks(py::module_& module);
 void bind_scenes(py::module_& module);
+void bind_films(py::module_& module);
 void bind_files(py::module_& module);
 void bind_images(py::module_& module);
 void bind_renderers(py::module_& module);

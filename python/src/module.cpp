@@ -27,6 +27,7 @@ PYBIND11_MODULE(_pellucid, module) {
   bind_renderers(module);
   bind_ranks(module);
   bind_files(module);
+  bind_films(module);
   bind_segments(module);
   bind_viewers(module);
   bind_vtk_scenes(module);

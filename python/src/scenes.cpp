@@ -394,6 +394,10 @@ PythonScene read_scene(const py::object& object) {
   made.is_transparent = !shown_background(object);
   scene.samples = integer_of(object.attr("samples"), "samples");
   scene.integration = integration_of(object.attr("integration"));
+  if (const py::object animation = object.attr("animation"); !animation.is_none()) {
+    const py::object text = py::module_::import("json").attr("dumps")(animation);
+    made.description.animation = parse_animation(py::cast<std::string>(text), "animation");
+  }
   if (const py::object backdrop = object.attr("backdrop"); !backdrop.is_none()) {
     if (!py::isinstance<ImageHandle>(backdrop)) {
       throw Error("backdrop: expected an Image with depth, got " + short_repr(backdrop));

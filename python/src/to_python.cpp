@@ -158,6 +158,10 @@ py::object to_python(const Scene& scene, const SceneDescription& description) {
       parts["background"] = py::make_tuple(to_tuple(background->top), to_tuple(background->bottom));
     }
   }
+  if (description.animation) {
+    parts["animation"] =
+        py::module_::import("json").attr("loads")(animation_to_json(*description.animation));
+  }
   if (scene.backdrop) parts["backdrop"] = ImageHandle{scene.backdrop};
   return scene_class("Scene")(**parts);
 }

@@ -66,7 +66,7 @@ Quaternion negative(const Quaternion& q) {
   return {-q[0], -q[1], -q[2], -q[3]};
 }
 
-/// The number that the picture's extent goes with: the angle of view, or the scale.
+/// Returns the number that the picture's extent goes with: the angle of view, or the scale.
 double extent_of(const Camera& camera) {
   return camera.projection == Projection::perspective ? camera.vertical_angle
                                                       : camera.parallel_scale;

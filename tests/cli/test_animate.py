@@ -130,6 +130,23 @@ class Animate(ProgramTest):
         for part in ("0/2", "3/2", "1", "1/2/3", "a/b"):
             self.fail_with("expected K/N", *arguments, "f/%d.png", "--part", part, code=2)
 
+    @unittest.skipUnless(shutil.which("mpirun"), "mpirun is not installed: no ranks")
+    def test_ranks_make_the_same_frames(self):
+        arguments = ["animate", "builtin:shells:16", "--size", "16", "--frames", "5", "-q", "-o"]
+        self.succeed(*arguments, "whole/%d.png")
+        environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1",
+                       "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+        run = ["mpirun", "--oversubscribe", "-n", "3", PROGRAM]
+        subprocess.run([*run, *arguments, "f/%d.png", "--ranks", "--threads", "1"],
+                       cwd=self.path(""), env=environment, check=True, capture_output=True,
+                       timeout=600)
+        for name in self.frames("whole"):
+            self.assertEqual(self.read("f/" + name), self.read("whole/" + name), name)
+        failed = subprocess.run([*run, *arguments, "f.gif", "--ranks"], cwd=self.path(""),
+                                env=environment, check=False, capture_output=True, timeout=600)
+        self.assertNotEqual(failed.returncode, 0)
+        self.assertEqual(failed.stderr.count(b"cannot be a film"), 1)
+
     def test_steps_in_time(self):
         # Out of order in the file; the values of a step are all the same.
         order, values = [2, 0, 3, 1], [1, 2, 8, 4]

@@ -6,9 +6,9 @@ import unittest
 
 from program import SOURCE_DIR, ProgramTest, options_of
 
-COMMANDS = ("render", "view", "info", "histogram", "suggest", "convert", "export", "evaluate",
-            "compare", "presets", "transfer-function")
-READ_VOLUMES = ("render", "view", "info", "histogram", "suggest", "convert", "export")
+COMMANDS = ("render", "animate", "view", "info", "histogram", "suggest", "convert", "export",
+            "evaluate", "compare", "presets", "transfer-function")
+READ_VOLUMES = ("render", "animate", "view", "info", "histogram", "suggest", "convert", "export")
 
 
 def options_of_manual(text):

@@ -17,6 +17,7 @@
 #include "arguments/parse.h"
 #include "commands.h"
 #include "pellucid/base/version.h"
+#include "pellucid/cluster/communicator.h"
 #include "pellucid/cpu/renderer.h"
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/film.h"
@@ -38,6 +39,7 @@ struct AnimateArguments {
   std::optional<int> frames;
   bool keeps_frames = false;
   std::string part;
+  bool ranks = false;
 };
 
 /// Throws UsageError for what frames of a film cannot have.
@@ -89,7 +91,7 @@ void check(const AnimateArguments& arguments) {
   refuse_overwriting(outputs, inputs);
 }
 
-/// "0:2.5": the times of the first and the last frame.
+/// Parses "0:2.5", the times of the first and the last frame.
 std::array<double, 2> parse_times(const std::string& text) {
   std::array<double, 2> times{};
   const char* const end = text.data() + text.size();
@@ -140,7 +142,7 @@ void copy_choice(const LayerDescription& from, LayerDescription& to) {
   to.look = from.look;
 }
 
-/// "3 min 20 s"
+/// Returns "3 min 20 s".
 std::string duration_text(double seconds) {
   const long whole = std::lround(seconds);
   if (whole < 60) return fmt::format("{} s", whole);
@@ -204,7 +206,7 @@ class FilmRun {
                        scene_to_json(description), options_text());
   }
 
-  /// What else a picture depends on.
+  /// Returns what else a picture depends on.
   std::string options_text() const {
     const RenderArguments& scene = arguments_.scene;
     return fmt::format("background {}; color bar {} '{}'", scene.background,
@@ -328,24 +330,63 @@ class FilmRun {
   double largest_error_ = 0;
 };
 
-/// Throws OverTolerance if frames are over it.
-void check_over(const std::vector<int>& over) {
-  if (over.empty()) return;
-  throw OverTolerance(fmt::format(
-      "{} of the frames have pixels that may be over the tolerance, first frame {}: their metadata "
-      "say how many",
-      over.size(), over.front()));
+std::string over_text(const std::string& frames) {
+  return fmt::format(
+      "some pixels of frames may be over the tolerance; the pictures' metadata say how many: {}",
+      frames);
+}
+
+/// Renders a share of the frames on each rank of MPI, which see the same folder. The first makes
+/// the video, and speaks for all.
+int run_on_ranks(AnimateArguments arguments) {
+  const std::unique_ptr<Communicator> ranks = mpi_communicator();
+  const bool is_first = ranks->rank() == 0;
+  if (!is_first) arguments.scene.quiet = true;
+  std::optional<FilmRun> run;
+  std::string failure;
+  try {
+    run.emplace(arguments, FilmShare{ranks->rank(), ranks->size()});
+    (*run)();
+  } catch (const std::exception& error) {
+    failure = error.what();
+  } catch (const Interrupted& interrupted) {
+    failure = "interrupted";
+  }
+  for (const std::string& text : ranks->gather_all(failure)) {
+    if (text.empty()) continue;
+    if (is_first) throw Error(text);
+    return 1;
+  }
+  const auto over = run->over().empty() ? "" : fmt::format("{}", fmt::join(run->over(), ", "));
+  std::string all_over;
+  for (const std::string& text : ranks->gather_all(over)) {
+    if (!text.empty()) all_over += (all_over.empty() ? "" : ", ") + text;
+  }
+  if (is_first) {
+    run->files().finish(run->film().frames(), run->fps(), arguments.keeps_frames);
+    run->tell(arguments.output);
+    if (!all_over.empty()) throw OverTolerance(over_text(all_over));
+  }
+  return 0;
 }
 
 int run_animate(const AnimateArguments& arguments) {
   check(arguments);
+  if (arguments.ranks) {
+    if (!arguments.part.empty()) {
+      throw UsageError("--part: --ranks deals the frames; leave one of the two out");
+    }
+    return run_on_ranks(arguments);
+  }
   FilmRun run(arguments, parse_film_share("--part", arguments.part));
   run();
   if (arguments.part.empty()) {
     run.files().finish(run.film().frames(), run.fps(), arguments.keeps_frames);
   }
   run.tell(arguments.output);
-  check_over(run.over());
+  if (!run.over().empty()) {
+    throw OverTolerance(over_text(fmt::format("{}", fmt::join(run.over(), ", "))));
+  }
   return 0;
 }
 
@@ -353,7 +394,7 @@ int run_animate(const AnimateArguments& arguments) {
 
 Command add_animate(CommandLine& app) {
   CommandLine& command = *app.add_subcommand(
-      "animate", "Render a film: a turntable, the steps of a simulation, or a scene's animation");
+      "animate", "Render a film: a turntable, steps in time, or a scene's keyframes");
   const auto arguments = std::make_shared<AnimateArguments>();
   arguments->scene.suggests_functions = true;
   command.add_option(
@@ -392,6 +433,10 @@ Command add_animate(CommandLine& app) {
                   "Render every N-th frame from the K-th on, K from 1, and make no video: for N "
                   "machines. A last call without it makes it")
       ->option_text("K/N");
+  command.add_flag("--ranks", arguments->ranks,
+                   "Deal the frames to all ranks of MPI that this program is started on, which "
+                   "share the folder: mpirun -n 8 pellucid animate SCENE.json --ranks -o o.webm. "
+                   "Give --threads, too");
   command.add_flag("--keep-frames", arguments->keeps_frames,
                    "Keep the pictures of a video in the folder FILE.frames");
   command.add_flag("-q,--quiet", arguments->scene.quiet, "Print no progress or notes, only errors");

@@ -35,7 +35,7 @@ struct RenderArguments {
   std::optional<double> azimuth, elevation, zoom;
   std::optional<int> samples;
   int threads = 0;
-  std::string balance;  ///< of the bricks of ranks
+  std::string balance;  ///< balance of the bricks of ranks
   bool ranks = false;
   std::string color_bar_title;
   bool color_bar = false;
@@ -129,7 +129,7 @@ void set_transfer_function(const RenderArguments& arguments, SceneDescription& d
 /// A scene that is described, and whose data are not read yet.
 struct SceneRequest {
   PreparedScene prepared;        ///< without the scene
-  SceneDescription description;  ///< what is to be read
+  SceneDescription description;  ///< scene that is to be read
   std::shared_ptr<std::vector<std::string>> mesh_notes;
   /// Layers whose data were read for a suggested function, with these; none of the others.
   std::vector<std::optional<Layer>> loaded;

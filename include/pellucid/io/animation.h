@@ -10,7 +10,7 @@
 
 namespace pellucid {
 
-/// How a value goes from one key to the next: evenly, slowly at both ends (3u² - 2u³), or not at
+/// Way of a value from one key to the next: evenly, slowly at both ends (3u² - 2u³), or not at
 /// all until the next key is there.
 enum class Easing { linear, smooth, hold };
 inline constexpr const char* easing_names[] = {"linear", "smooth", "hold"};
@@ -33,14 +33,14 @@ struct AnimationTrack {
   std::vector<Key> keys;  ///< one at least, in the order of time
 };
 
-/// How a scene changes in time, as the key "animation" of a scene says; docs/reference/scene.md
+/// Changes of a scene in time, as the key "animation" of a scene says; docs/reference/scene.md
 /// describes it.
 struct Animation {
-  double seconds = 5;  ///< of the film
+  double seconds = 5;  ///< length of the film
   double fps = 24;     ///< frames per second
   std::optional<Turntable> turntable;
-  std::vector<CameraKey> cameras;  ///< of a CameraPath; empty: the scene's camera
-  bool is_closed = false;          ///< whether that path returns to its first camera
+  std::vector<CameraKey> cameras;  ///< keys of a CameraPath; empty: the scene's camera
+  bool is_closed = false;          ///< True if that path returns to its first camera.
   /// Times of the data at the first and at the last frame, between which they go evenly; none: they
   /// do not change.
   std::optional<std::array<double, 2>> time;

@@ -28,7 +28,7 @@ class SceneTimes {
   void set(SceneDescription& description, double moment) const;
 
  private:
-  std::vector<std::vector<std::vector<double>>> times_;  ///< of each source of each layer
+  std::vector<std::vector<std::vector<double>>> times_;  ///< times of each source of each layer
   std::vector<double> all_;
 };
 
@@ -44,7 +44,7 @@ Animation default_animation(const SceneTimes& times);
 /// replace or add what their pointers name.
 class Film {
  public:
-  /// `written`: the scene as its author wrote it, into which the tracks point. `complete`: the same
+  /// Takes the scene as its author wrote it, into which the tracks point, and `complete`: the same
   /// after complete_description(), so that what was chosen from the data stays the same in all
   /// frames; where a track changes a part of it, such as a layer's transfer function, all of this
   /// part is as written. Makes the description of every frame once, to check it. Throws Error,
@@ -79,7 +79,7 @@ class Film {
 /// description stays, with all that renderers have made for them, and data whose sources stay.
 class FrameLoader {
  public:
-  /// `loaded`: the data of `description`, of which the first frame may keep some.
+  /// Takes the data of `description`, of which the first frame may keep some.
   FrameLoader(const SceneDescription& description, const Scene& loaded);
 
   /// Throws Error.

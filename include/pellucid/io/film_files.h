@@ -17,7 +17,7 @@ struct SceneDescription;
 /// where it ended.
 class FilmFiles {
  public:
-  /// `path`: a video (.webm: VP9, .mp4: H.264), whose pictures are in a folder beside it until it
+  /// Takes a video (.webm: VP9, .mp4: H.264), whose pictures are in a folder beside it until it
   /// is done, or the name of pictures with a place for their number, counted from 0, as
   /// "frames/%04d.png" or ".exr", whose folder is made where it is missing. Throws Error if it is
   /// none of these or cannot be written, or FFmpeg or its encoder is not there.
@@ -40,7 +40,7 @@ class FilmFiles {
   void finish(int frames, double fps, bool keeps_pictures) const;
 
  private:
-  std::filesystem::path path_, folder_;  ///< of the pictures of a video; empty: none is wanted
+  std::filesystem::path path_, folder_;  ///< folder of a video's pictures; empty: none is wanted
   std::string before_, after_;           ///< the number in the name of a picture
   int digits_ = 6, most_ = 0;
 };

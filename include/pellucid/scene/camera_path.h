@@ -29,11 +29,11 @@ struct CameraKey {
 /// four cameras around an object make a circle, which does not cut through it.
 class CameraPath {
  public:
-  /// Ways of `keys`, at least one. With times the path is at each key when it says; without, its
-  /// speed is constant over `seconds`, where equal cameras that follow each other count as one.
-  /// `is_closed`: after the last key it returns to the first, at `seconds`. Throws Error if there
-  /// is no key, if some keys have times and others have none, if times do not ascend from 0 to
-  /// `seconds`, if a camera is not valid, or if their projections differ.
+  /// Makes the way through `keys`, at least one. With times the path is at each key when it says;
+  /// without, its speed is constant over `seconds`, where equal cameras that follow each other
+  /// count as one. `is_closed`: after the last key it returns to the first, at `seconds`. Throws
+  /// Error if there is no key, if some keys have times and others have none, if times do not ascend
+  /// from 0 to `seconds`, if a camera is not valid, or if their projections differ.
   CameraPath(const std::vector<CameraKey>& keys, double seconds, bool is_closed = false);
 
   /// Returns the camera at a moment; before the first key it is the first, after the last the last.

@@ -20,7 +20,7 @@ extern char** environ;
 namespace pellucid {
 namespace {
 
-/// How a process ended: its status, -1 if it could not be started, and what it wrote to stderr.
+/// End of a process: its status, -1 if it could not be started, and what it wrote to stderr.
 struct Outcome {
   int status = -1;
   std::string said;

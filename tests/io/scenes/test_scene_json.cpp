@@ -313,8 +313,8 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
   EXPECT_EQ(
       error_of([&] { parse_scene(page.substr(begin, end - begin), "docs/reference/scene.md"); }),
       "");
-  // Behind it stand a layer with a mesh, six scenes, a layer with channels, and three transfer
-  // functions.
+  // Behind it stand a layer with a mesh, six scenes, a layer with channels, three transfer
+  // functions, and an animated scene.
   std::vector<std::string> blocks;
   for (std::size_t at = end + 3; (at = page.find("```json\n", at)) != std::string::npos;) {
     const std::size_t from = at + 8;
@@ -323,12 +323,12 @@ TEST(SceneJson, ExamplesAndTheDocumentedSceneAreValid) {
     blocks.push_back(page.substr(from, at - from));
     at += 3;
   }
-  ASSERT_EQ(blocks.size(), 11U);
+  ASSERT_EQ(blocks.size(), 12U);
   for (const std::string& layer : {blocks[0], blocks[7]}) {
     EXPECT_EQ(error_of([&] { parse_scene("{\"layers\": [" + layer + "]}", "scene.md"); }), "");
   }
   for (const std::string& scene :
-       {blocks[1], blocks[2], blocks[3], blocks[4], blocks[5], blocks[6]}) {
+       {blocks[1], blocks[2], blocks[3], blocks[4], blocks[5], blocks[6], blocks[11]}) {
     EXPECT_EQ(error_of([&] { parse_scene(scene, "scene.md"); }), "");
   }
   const auto function = [&](const std::string& text) {

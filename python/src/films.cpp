@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "images.h"
+#include "pellucid/cpu/threads.h"
+#include "pellucid/io/film.h"
+#include "pellucid/io/film_files.h"
+#include "scenes.h"
+
+namespace pellucid::python {
+
+namespace {
+
+/// Has steps in time, which a scene's data have been read at one of, found again.
+void forget_times(SceneDescription& scene) {
+  for (LayerDescription& layer : scene.layers) {
+    visit_sources(layer, [](FieldSource& field) { field.options.time.reset(); });
+    if (layer.mesh) layer.mesh->options.time.reset();
+  }
+}
+
+/// The scenes of a film, for one thread at a time.
+class FilmScenes {
+ public:
+  FilmScenes(const py::object& object, const std::string& animation) {
+    PythonScene made = complete_python_scene(object);
+    SceneDescription complete = described(made);
+    complete.camera = made.scene.camera;
+    const auto wanted =
+        animation.empty() ? std::nullopt : std::optional(parse_animation(animation, "animation"));
+    const ReleasedLock released;
+    SceneDescription timed = complete;
+    const bool moves = wanted && (wanted->time || wanted->by_steps);
+    if (moves) forget_times(timed);
+    SceneTimes times(timed);
+    film_ = std::make_unique<Film>(timed, timed, wanted ? *wanted : default_animation(times),
+                                   std::move(times));
+    loader_ = std::make_unique<FrameLoader>(complete, made.scene);
+    backdrop_ = made.scene.backdrop;
+  }
+
+  int frames() const { return film_->frames(); }
+
+  /// Returns the scene of a frame, and as text what it is made from; none for arrays.
+  py::tuple frame(int index) {
+    if (index < 0 || index >= frames()) throw py::index_error("frame " + std::to_string(index));
+    Scene scene;
+    SceneDescription description;
+    std::string made_from;
+    {
+      const ReleasedLock released;
+      description = film_->description(index);
+      scene = loader_->load(description, parallel_for(default_thread_count()));
+      scene.backdrop = backdrop_;
+      if (are_files(description)) made_from = data_stamp(description) + film_->scene_text(index);
+    }
+    return py::make_tuple(to_python(scene, description), made_from);
+  }
+
+ private:
+  static bool are_files(const SceneDescription& description) {
+    try {
+      check_has_sources(description);
+    } catch (const Error&) {
+      return false;
+    }
+    return true;
+  }
+
+  std::unique_ptr<Film> film_;
+  std::unique_ptr<FrameLoader> loader_;
+  std::shared_ptr<const Image> backdrop_;
+};
+
+}  // namespace
+
+void bind_films(py::module_& module) {
+  py::class_<FilmScenes>(module, "_FilmScenes")
+      .def(py::init<const py::object&, const std::string&>(), py::arg("scene"),
+           py::arg("animation"))
+      .def("__len__", &FilmScenes::frames)
+      .def("frame", &FilmScenes::frame, py::arg("index"));
+  py::class_<FilmFiles>(module, "_FilmFiles")
+      .def(py::init<std::filesystem::path>(), py::arg("path"))
+      .def_property_readonly("is_video", &FilmFiles::is_video)
+      .def("picture", &FilmFiles::picture, py::arg("frame"))
+      .def("has", &FilmFiles::has, py::arg("frame"), py::arg("made_from"))
+      .def(
+          "write",
+          [](const FilmFiles& files, int frame, const ImageHandle& image,
+             const std::string& made_from) {
+            std::optional<Background> background = image.background;
+            if (files.is_video() && !background) background = calm_background();
+            const ReleasedLock released;
+            files.write(frame, *image.image, made_from, background);
+          },
+          py::arg("frame"), py::arg("image"), py::arg("made_from"))
+      .def("finish", &FilmFiles::finish, py::arg("frames"), py::arg("fps"),
+           py::arg("keeps_pictures"), py::call_guard<py::gil_scoped_release>());
+}
+
+}  // namespace pellucid::python
