@@ -124,8 +124,8 @@ ReadOptions VolumeOptions::read_options() const {
   if (!axes.empty()) {
     if (!is_array_axes(axes)) {
       throw UsageError(fmt::format(
-          "--array-axes: '{}' does not name axes; give x, y and z, and c for components, "
-          "in the order of the array's indices: zyx, xyz, czyx",
+          "--array-axes: '{}' does not name axes; give x, y and z, and c for components or t for "
+          "steps in time, in the order of the array's indices: zyx, xyz, czyx, tzyx",
           axes));
     }
     read.axes = axes;

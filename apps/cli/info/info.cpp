@@ -22,6 +22,7 @@
 #include "orientation.h"
 #include "pellucid/base/version.h"
 #include "pellucid/io/dicom_series.h"
+#include "pellucid/io/time_steps.h"
 #include "pellucid/scene/labels.h"
 
 namespace pellucid::cli {
@@ -45,6 +46,7 @@ struct Facts {
   Orientation orientation;
   std::string unit;                                ///< of the values; empty: the file names none
   std::vector<std::optional<std::size_t>> labels;  ///< label_count of each component
+  std::vector<double> times;                       ///< of the steps; empty: there are none
 };
 
 double mean_of(const Volume& volume) {
@@ -79,6 +81,7 @@ Facts facts_of(const std::vector<Volume>& components, const FieldSource& source)
       facts.world_upper[axis] = std::max(facts.world_upper[axis], corner[axis]);
     }
   }
+  facts.times = source_times(source);
   if (source.builtin.empty()) facts.space = world_space(source.file, source.options);
   facts.anatomical = facts.space == "LPS";
   if (facts.anatomical) {
@@ -137,6 +140,18 @@ std::string bar_chart(const Histogram& histogram) {
   return chart;
 }
 
+/// Returns "3 (0, 0.5, 1)", or of many "100, from 0 to 49.5".
+std::string times_text(const std::vector<double>& times) {
+  constexpr std::size_t most = 12;
+  if (times.size() > most) {
+    return fmt::format("{}, from {} to {}", times.size(), number(times.front()),
+                       number(times.back()));
+  }
+  std::string list;
+  for (const double time : times) list += (list.empty() ? "" : ", ") + number(time);
+  return fmt::format("{} ({})", times.size(), list);
+}
+
 std::string range_text(const VolumeStatistics& statistics) {
   return statistics.finite == 0
              ? "no finite value"
@@ -178,6 +193,7 @@ std::string text_report(const std::vector<Volume>& components, const Facts& fact
     line("space", facts.space + " (the file's name for it, which is no patient's)");
   }
   line("world box", fmt::format("{} to {}", triple(facts.world_lower), triple(facts.world_upper)));
+  if (!facts.times.empty()) line("times", times_text(facts.times));
   if (components.size() > 1) {
     line("components", std::to_string(components.size()));
     for (std::size_t c = 0; c < components.size(); ++c) {
@@ -247,6 +263,7 @@ Json json_report(const std::vector<Volume>& components, const Facts& facts, cons
   json["space"] = facts.space.empty() ? Json() : Json(facts.space);
   json["world_box"] = {to_json(facts.world_lower), to_json(facts.world_upper)};
   json["unit"] = facts.unit.empty() ? Json() : Json(facts.unit);
+  json["times"] = facts.times;
   if (components.size() == 1) {
     json.update(values_json(volume, facts.mean.front(), facts.labels.front()));
     return json;

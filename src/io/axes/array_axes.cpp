@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <string_view>
 #include <vector>
 
 #include "pellucid/scene/error.h"
@@ -68,21 +69,22 @@ std::string checked_axes(const std::string& letters) {
   std::string known;
   bool wrong = letters.size() < 3 || letters.size() > 4;
   for (const char c : letters) {
-    char letter = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    if (letter == 't') letter = 'c';
-    const bool is_one = letter == 'x' || letter == 'y' || letter == 'z' || letter == 'c';
+    const char letter = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    const bool is_one = std::string_view("xyzct").find(letter) != std::string_view::npos;
     wrong = wrong || !is_one || known.find(letter) != std::string::npos;
     known += letter;
   }
-  // Four letters that differ are all of them; of three none may be c.
-  wrong = wrong || (known.size() == 3 && known.find('c') != std::string::npos);
+  for (const char letter : {'x', 'y', 'z'}) {
+    wrong = wrong || known.find(letter) == std::string::npos;
+  }
   if (!wrong) return known;
   std::string shown = letters.substr(0, 20);
   std::ranges::replace_if(
       shown, [](char c) { return c < ' ' || c > '~'; }, '?');
   throw Error("the axes \"" + shown +
               "\" are not understood; give a letter for each axis of the array in the order of its "
-              "indices: z, y and x, and c for components, as in zyx, xyz or czyx");
+              "indices: z, y and x, and c for components or t for steps in time, as in zyx, xyz or "
+              "tzyx");
 }
 
 std::string shape_text(std::span<const std::int64_t> shape) {
@@ -123,8 +125,9 @@ ArrayAxes array_axes(std::span<const std::int64_t> shape, const std::optional<st
     }
   }
   for (std::size_t i = 0; i < places.size(); ++i) {
-    if (names[i] == 'c') {
+    if (names[i] == 'c' || names[i] == 't') {
       axes.components = places[i];
+      axes.are_steps = names[i] == 't';
     } else {
       axes.space[static_cast<std::size_t>(names[i] - 'x')] = places[i];
     }

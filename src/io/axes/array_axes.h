@@ -16,11 +16,12 @@ namespace pellucid {
 struct ArrayAxes {
   std::array<std::size_t, 3> space{};     ///< those of x, y and z
   std::optional<std::size_t> components;  ///< the one beside them
+  bool are_steps = false;                 ///< whether its letter is t, for steps in time
   std::string guess;  ///< letters of four axes that nobody named: "czyx"; else empty
 };
 
-/// Letters of axes in the order of an array's indices: z, y and x once each, and c (or t) for
-/// components; "czyx". Returns them in small letters, t as c. Throws Error.
+/// Letters of axes in the order of an array's indices: z, y and x once each, and c for components
+/// or t for steps in time; "czyx". Returns them in small letters. Throws Error.
 std::string checked_axes(const std::string& letters);
 
 /// Returns the axes of an array of this shape. Axes of one entry in front and behind do not count.

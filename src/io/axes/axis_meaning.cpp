@@ -208,7 +208,9 @@ VolumeAxes volume_axes(const ArrayAxes& axes, std::span<const std::int64_t> shap
   volume.space = axes.space;
   if (!axes.components) return volume;
   volume.components = {*axes.components};
-  volume.holds = std::to_string(shape[*axes.components]) + " components (axis " +
+  if (axes.are_steps) volume.time = axes.components;
+  volume.holds = std::to_string(shape[*axes.components]) +
+                 (axes.are_steps ? " steps (axis " : " components (axis ") +
                  std::to_string(*axes.components) + ")";
   return volume;
 }

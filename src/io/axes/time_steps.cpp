@@ -18,7 +18,7 @@ std::string written(double time) {
 
 }  // namespace
 
-std::string times_note(const std::vector<double>& times) {
+std::string times_note(const std::vector<double>& times, const std::string& unit) {
   constexpr std::size_t most = 12;
   std::string list;
   for (std::size_t i = 0; i < times.size(); ++i) {
@@ -28,12 +28,14 @@ std::string times_note(const std::vector<double>& times) {
     }
     list += (i == 0 ? "" : ", ") + written(times[i]);
   }
-  return std::to_string(times.size()) + " times (" + list + "); --time chooses one";
+  return std::to_string(times.size()) + " times (" + list + ")" +
+         (unit.empty() ? "" : " in " + unit) + "; --time chooses one";
 }
 
-std::string step_note(const std::vector<double>& times, std::size_t step, double wanted) {
+std::string step_note(const std::vector<double>& times, std::size_t step, double wanted,
+                      const std::string& unit) {
   return "step " + std::to_string(step + 1) + " of " + std::to_string(times.size()) +
-         " is read, time " + written(times[step]) +
+         " is read, time " + written(times[step]) + (unit.empty() ? "" : " " + unit) +
          (times[step] == wanted ? "" : " (nearest to " + written(wanted) + ")");
 }
 

@@ -10,12 +10,14 @@
 
 namespace pellucid {
 
-/// Returns "5 times (0, 3, 6, 9, 12); --time chooses one", with the first and the last of many.
-std::string times_note(const std::vector<double>& times);
+/// Returns "5 times (0, 3, 6, 9, 12) in s; --time chooses one", with the first and the last of
+/// many, and the unit where there is one.
+std::string times_note(const std::vector<double>& times, const std::string& unit = {});
 
 /// Returns "step 2 of 5 is read, time 3 (nearest to 4)", without the bracket where the time
-/// is met exactly. `step` counts from 0.
-std::string step_note(const std::vector<double>& times, std::size_t step, double wanted);
+/// is met exactly; with a unit, "time 3 s". `step` counts from 0.
+std::string step_note(const std::vector<double>& times, std::size_t step, double wanted,
+                      const std::string& unit = {});
 
 /// Returns the times of steps that follow each other at one distance.
 std::vector<double> even_times(std::size_t count, double first, double step);

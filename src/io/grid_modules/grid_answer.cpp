@@ -39,6 +39,7 @@ json of_array(const GridArray& array) {
          {"components", array.components},
          {"holds", of_text(array.holds)},
          {"times", array.times},
+         {"times_unit", of_text(array.times_unit)},
          {"components_of_a_step", array.components_of_a_step},
          {"positions", json::array()},
          {"notes", json::array()},
@@ -58,6 +59,7 @@ GridArray array_of(const json& j) {
   j.at("components").get_to(array.components);
   array.holds = text_of(j.at("holds"));
   j.at("times").get_to(array.times);
+  array.times_unit = text_of(j.at("times_unit"));
   j.at("components_of_a_step").get_to(array.components_of_a_step);
   for (std::size_t a = 0; a < 3; ++a) array.positions[a] = positions_of(j.at("positions").at(a));
   for (const json& note : j.at("notes")) array.notes.push_back(text_of(note));

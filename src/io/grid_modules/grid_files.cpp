@@ -13,16 +13,15 @@
 #include <utility>
 
 #include "axes/grid_axes.h"
-#include "axes/time_steps.h"
 #include "files/input_file.h"
 #include "files/memory_limit.h"
 #include "grid_answer.h"
-#include "meshes/mesh_blocks.h"
 #include "pellucid/scene/error.h"
 #include "process/contained.h"
 #include "process/contained_values.h"
 #include "text/text.h"
 #include "volumes/array_statistics.h"
+#include "volumes/volume_steps.h"
 
 namespace pellucid {
 
@@ -209,38 +208,6 @@ std::vector<VolumeData> read_values(const std::filesystem::path& path, const Gri
   return components;
 }
 
-/// Chooses the step of the nearest time. Where it has several components, they are what is left.
-void choose_time(const GridArray& array, const ReadOptions& options, const std::string& name,
-                 VolumeFile& file) {
-  const auto steps = static_cast<int>(array.times.size());
-  if (steps == 0) {
-    throw Error(name + ": \"" + one_line(array.name) +
-                "\" has no steps in time; leave the time out");
-  }
-  const std::size_t nearest = nearest_step(array.times, options.time);
-  const auto step = static_cast<int>(nearest);
-  const int others = array.components / steps;
-  if (others == 1 && options.component) {
-    throw Error(name + ": give a time or a component, not both");
-  }
-  if (options.note) options.note(name + ": " + step_note(array.times, nearest, *options.time));
-  if (others == 1) {
-    file.step = step;
-    return;
-  }
-  file.components = others;
-  file.holds = "one step of " + file.holds;
-  file.read = [read = file.read, step, steps,
-               inside = array.components_of_a_step](ComponentRange range) {
-    std::vector<VolumeData> values;
-    for (int c = range.first; c < range.first + range.number; ++c) {
-      const int component = (c / inside * steps + step) * inside + c % inside;
-      values.push_back(std::move(read({component, 1, range.part}).front()));
-    }
-    return values;
-  };
-}
-
 }  // namespace
 
 VolumeFile open_grid(const std::filesystem::path& path, const ReadOptions& options,
@@ -256,7 +223,6 @@ VolumeFile open_grid(const std::filesystem::path& path, const ReadOptions& optio
   file.components = array.components;
   file.holds = one_line(array.holds + " in \"" + array.name + "\"");
   file.array = array.name;
-  file.times = array.times;
   file.reads_parts = array.reads_parts;
   for (const std::string& note : array.notes) {
     if (options.note) options.note(name + ": " + one_line(note));
@@ -264,12 +230,8 @@ VolumeFile open_grid(const std::filesystem::path& path, const ReadOptions& optio
   file.read = [path, &format, array, options](ComponentRange range) {
     return read_values(path, format, array, options, range);
   };
-  refuse_movie(array.times.size(), array.sides[2], options, name);
-  if (options.time) {
-    choose_time(array, options, name, file);
-  } else if (array.times.size() > 1 && options.note) {
-    options.note(name + ": \"" + one_line(array.name) + "\" holds " + times_note(array.times));
-  }
+  take_steps({array.times, one_line(array.times_unit), array.components_of_a_step}, options,
+             name + ": \"" + one_line(array.name) + "\" ", file);
   return file;
 }
 

@@ -26,6 +26,7 @@ struct GridArray {
   int components = 1;
   std::string holds;             ///< what several are: "12 steps (axis time)"
   std::vector<double> times;     ///< of these steps, where the file says them
+  std::string times_unit;        ///< as the file has it: "hours since 2000-01-01"
   int components_of_a_step = 1;  ///< components that lie inside one step, the fastest ones
   std::array<AxisPositions, 3> positions;  ///< along x, y, z
   std::optional<GridPlacement> placement;  ///< in place of positions
@@ -61,8 +62,8 @@ using ListGrids = void(const std::filesystem::path& path, const AxisLetters& axe
                        GridContents& answer);
 using ReadGrid = void(const std::filesystem::path& path, const std::string& array,
                       const AxisLetters& axes, ComponentRange range, GridValues& answer);
-inline constexpr const char* list_grids_name = "pellucid_list_grids_4";
-inline constexpr const char* read_grid_name = "pellucid_read_grid_4";
+inline constexpr const char* list_grids_name = "pellucid_list_grids_5";
+inline constexpr const char* read_grid_name = "pellucid_read_grid_5";
 
 /// Returns the part of a grid with these sides that is wanted; all of it where none is. Throws
 /// Error where the part is one of another grid.

@@ -13,13 +13,13 @@ constexpr const char* remedy =
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) void pellucid_list_grids_4(
+extern "C" __attribute__((visibility("default"))) void pellucid_list_grids_5(
     const std::filesystem::path& path, const pellucid::AxisLetters& axes,
     pellucid::GridContents& answer) {
   pellucid::answer(answer.error, remedy, [&] { pellucid::list_grids(path, axes, answer); });
 }
 
-extern "C" __attribute__((visibility("default"))) void pellucid_read_grid_4(
+extern "C" __attribute__((visibility("default"))) void pellucid_read_grid_5(
     const std::filesystem::path& path, const std::string& array, const pellucid::AxisLetters& axes,
     pellucid::ComponentRange range, pellucid::GridValues& answer) {
   pellucid::answer(answer.error, remedy,

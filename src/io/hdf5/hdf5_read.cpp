@@ -113,7 +113,11 @@ void place(const Hdf5Axes& named, Dataset& dataset) {
     if (!own.numbers.empty() || array.positions[a].numbers.empty()) array.positions[a] = own;
   }
   if (!dataset.axes.time) return;
-  if (array.times.empty()) array.times = named.positions[*dataset.axes.time].numbers;
+  if (array.times.empty()) {
+    const AxisPositions& along = named.positions[*dataset.axes.time];
+    array.times = along.numbers;
+    if (!array.times.empty()) array.times_unit = along.units;
+  }
   for (std::int64_t t = 0; array.times.empty() && t < dataset.shape[*dataset.axes.time]; ++t) {
     array.times.push_back(static_cast<double>(t));
   }

@@ -105,9 +105,12 @@ GridArray describe(const NetCdfVolume& of) {
   array.holds = of.volume.holds;
   if (of.volume.time) {
     const std::int64_t steps = variable.sides[*of.volume.time];
-    array.times = positions_of(of.axes[*of.volume.time], steps).numbers;
+    AxisPositions along = positions_of(of.axes[*of.volume.time], steps);
+    array.times = std::move(along.numbers);
     // Steps without times are counted.
-    if (array.times.empty()) {
+    if (!array.times.empty()) {
+      array.times_unit = std::move(along.units);
+    } else {
       for (std::int64_t t = 0; t < steps; ++t) array.times.push_back(static_cast<double>(t));
     }
     array.components_of_a_step = of.volume.components_of_a_step(variable.sides);

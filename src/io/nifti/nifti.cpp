@@ -16,6 +16,7 @@
 #include "ras_affine.h"
 #include "volumes/components.h"
 #include "volumes/volume_format.h"
+#include "volumes/volume_steps.h"
 
 namespace pellucid {
 
@@ -286,6 +287,9 @@ VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& opti
                values = header.single_file ? files.header : files.values](ComponentRange range) {
     return read_file_values(values, header, count, range, name);
   };
+  if (options.time || !header.times.empty()) {
+    take_steps({header.times, header.time_unit}, options, name + ": ", file);
+  }
   return file;
 }
 
@@ -294,6 +298,7 @@ VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& opti
 extern const VolumeFormat nifti_format{.name = "NIfTI",
                                        .extensions = ".nii .nii.gz .hdr .hdr.gz .img .img.gz",
                                        .open = open_nifti,
+                                       .has_times = true,
                                        .is_of_patients = true};
 
 }  // namespace pellucid

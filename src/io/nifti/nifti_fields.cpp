@@ -67,6 +67,7 @@ void read_one(const Bytes& bytes, NiftiFields& fields) {
     return;
   }
   fields.intent = bytes.at<std::int16_t>(68);
+  fields.time_offset = static_cast<double>(bytes.at<float>(136));
   fields.units = bytes.at<std::uint8_t>(123);
   fields.qform_code = bytes.at<std::int16_t>(252);
   fields.sform_code = bytes.at<std::int16_t>(254);
@@ -89,6 +90,7 @@ void read_two(const Bytes& bytes, const std::string& name, NiftiFields& fields) 
   bytes.fill<std::int64_t>(fields.dim, 16);
   bytes.fill<double>(fields.pixdim, 104);
   fields.vox_offset = static_cast<double>(bytes.at<std::int64_t>(168));
+  fields.time_offset = bytes.at<double>(216);
   fields.slope = bytes.at<double>(176);
   fields.intercept = bytes.at<double>(184);
   fields.qform_code = bytes.at<std::int32_t>(344);

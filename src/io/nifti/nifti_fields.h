@@ -20,6 +20,7 @@ struct NiftiFields {
   std::array<std::int64_t, 8> dim{};
   int datatype = 0, intent = 0;
   std::array<double, 8> pixdim{};
+  double time_offset = 0;  ///< toffset; 0 in Analyze
   double vox_offset = 0;
   double slope = 0, intercept = 0;
   int units = 0;

@@ -8,6 +8,7 @@
 #include <span>
 #include <string_view>
 
+#include "axes/time_steps.h"
 #include "pellucid/scene/error.h"
 #include "ras_affine.h"
 
@@ -78,6 +79,23 @@ void check_intent(int intent, const std::string& name) {
   }
 }
 
+/// Sets the times of the fourth axis. Codes of frequencies, shifts and angles say that it is no
+/// time (nifti1.h, NIFTI_UNITS_HZ and the next).
+void find_times(const NiftiFields& fields, NiftiHeader& header) {
+  const int code = fields.version == NiftiVersion::analyze ? 0 : fields.units & 0x38;
+  constexpr int seconds = 8, milliseconds = 16, microseconds = 24;
+  if (code > microseconds) return;
+  header.time_unit = code == seconds        ? "s"
+                     : code == milliseconds ? "ms"
+                     : code == microseconds ? "us"
+                                            : "";
+  const double step = fields.pixdim[4], first = fields.time_offset;
+  const bool has_step = std::isfinite(step) && step > 0;
+  if (!has_step) header.time_unit.clear();  // they are counted
+  header.times = even_times(static_cast<std::size_t>(header.layout.components),
+                            has_step && std::isfinite(first) ? first : 0, has_step ? step : 1);
+}
+
 // Colors, or one of the axes behind the third.
 void find_components(const NiftiFields& fields, const std::string& name, NiftiHeader& header) {
   if (fields.datatype == rgb_code || fields.datatype == rgba_code) {
@@ -103,6 +121,7 @@ void find_components(const NiftiFields& fields, const std::string& name, NiftiHe
     }
     header.layout.components = static_cast<int>(n);
     header.holds = holds;
+    if (a == 4 && !vectors) find_times(fields, header);
   }
 }
 

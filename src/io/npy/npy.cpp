@@ -20,11 +20,13 @@
 #include "axes/array_axes.h"
 #include "axes/grid_axes.h"
 #include "axes/positions_beside.h"
+#include "axes/time_steps.h"
 #include "files/memory_limit.h"
 #include "pellucid/io/internal/parse_arrays.h"
 #include "pellucid/scene/error.h"
 #include "volumes/stored_numbers.h"
 #include "volumes/volume_format.h"
+#include "volumes/volume_steps.h"
 
 namespace pellucid {
 
@@ -425,9 +427,6 @@ PositionsBeside place_by_arrays(std::span<const ArrayBeside> beside, const NpyAr
   if (beside.empty()) return {};
   PositionsBeside found = positions_beside(
       beside, array.shape, {axes.space, axes.components, options.axes.has_value(), false});
-  if (!found.times.empty()) {
-    found.notes.emplace_back("its times, which stand beside it, are not read");
-  }
   if (!axes.guess.empty()) {
     for (std::size_t a = 0; a < 3; ++a) {
       // Axes of one entry in front of the four do not count.
@@ -467,6 +466,7 @@ VolumeFile open_array(const ByteSource& source, const ReadOptions& options, Behi
   // numpy.load reads the first of several arrays, too.
   note_bytes_left_over(source, array.offset + expected, options.note,
                        "numpy.savez keeps several arrays in one file");
+  const bool has_steps = axes.are_steps || !placed.times.empty();
   VolumeFile file;
   for (std::size_t a = 0; a < 3; ++a) file.description.dimensions[a] = static_cast<int>(sides[a]);
   file.description.name = source.name;
@@ -475,8 +475,8 @@ VolumeFile open_array(const ByteSource& source, const ReadOptions& options, Behi
   apply_overrides(options, file.description);
   file.components = lie.components;
   if (axes.components) {
-    file.holds = std::to_string(lie.components) + " components (axis " +
-                 std::to_string(*axes.components + 1) + " of " +
+    file.holds = std::to_string(lie.components) + (has_steps ? " steps" : " components") +
+                 " (axis " + std::to_string(*axes.components + 1) + " of " +
                  std::to_string(array.shape.size()) + ")";
   }
   if (options.note && !axes.guess.empty()) {
@@ -489,6 +489,11 @@ VolumeFile open_array(const ByteSource& source, const ReadOptions& options, Behi
     return lie.is_planar() || lie.is_interleaved() ? read_components(source, layout, points, range)
                                                    : read_permuted(source, layout, lie, range);
   };
+  const auto steps = static_cast<std::size_t>(has_steps ? lie.components : 0);
+  if (steps > 0 || options.time) {
+    take_steps({placed.times.empty() ? even_times(steps, 0, 1) : placed.times}, options,
+               source.name + ": ", file);
+  }
   return file;
 }
 
@@ -512,6 +517,7 @@ extern const VolumeFormat npy_format{
         [](const std::filesystem::path& path, const ReadOptions& options) {
           return open_array(file_source(path), options, Behind::noted);
         },
-    .takes_axes = true};
+    .takes_axes = true,
+    .has_times = true};
 
 }  // namespace pellucid

@@ -236,6 +236,7 @@ extern const VolumeFormat npz_format{
                const ReadOptions& options) { return open_npz(file_source(path), options); },
     .list = list_npz_arrays,
     .takes_axes = true,
+    .has_times = true,
     .is_of_patients = true};
 
 }  // namespace pellucid

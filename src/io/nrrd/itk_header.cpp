@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "itk_header.h"
 
+#include <algorithm>
 #include <bit>
 #include <memory>
 #include <span>
@@ -36,9 +37,47 @@ void call(const std::string& name, const char* function, Arguments&&... argument
   if (!error.empty()) throw Error(error);
 }
 
+/// Returns values whose components lie along an axis between others as if they lay one component
+/// behind the other, from byte 0 on. `before` are the bytes along the axes in front of that one.
+ByteSource with_components_last(ByteSource source, std::uintmax_t offset, std::uintmax_t before,
+                                std::uintmax_t components, std::uintmax_t all) {
+  ByteSource turned{source.name, all, {}, {}};
+  const std::uintmax_t of_component = all / components;
+  turned.read = [source = std::move(source), offset, before, components, of_component](
+                    std::uintmax_t from, std::span<std::byte> to) {
+    while (!to.empty()) {
+      const std::uintmax_t component = from / of_component, within = from % of_component;
+      const std::uintmax_t row = within / before, at = within % before;
+      const std::size_t bytes = std::min<std::uintmax_t>(before - at, to.size());
+      source.read(offset + (row * components + component) * before + at, to.first(bytes));
+      to = to.subspan(bytes);
+      from += bytes;
+    }
+  };
+  return turned;
+}
+
 std::vector<VolumeData> read_raw_values(const NrrdValues& values, ValueLayout layout,
-                                        std::size_t points, ComponentRange range) {
+                                        std::size_t points, std::size_t values_before,
+                                        ComponentRange range) {
   layout.big_endian = values.big_endian.value_or(false);
+  const std::string name = values.file.string();
+  const std::uintmax_t each = value_size(layout.type, name);
+  const bool is_between =
+      !layout.interleaved && layout.components > 1 && values_before > 1 && values_before < points;
+  const auto components = static_cast<std::uintmax_t>(layout.components);
+  if (values.compression && is_between) {
+    const std::uintmax_t all = value_count(points, layout.components, name) * each;
+    check_memory(all, name + ": its values");
+    std::vector<std::byte> bytes(all);
+    DataStream stream(values.file, values.offset, *values.compression);
+    stream.skip(values.skip_inside);
+    stream.read(bytes);
+    stream.finish();
+    return read_components(
+        with_components_last(memory_source(bytes, name), 0, values_before * each, components, all),
+        layout, points, range);
+  }
   if (values.compression) {
     DataStream stream(values.file, values.offset, *values.compression);
     stream.skip(values.skip_inside);
@@ -54,6 +93,12 @@ std::vector<VolumeData> read_raw_values(const NrrdValues& values, ValueLayout la
     layout.offset = source.size > bytes ? source.size - bytes : 0;
   }
   check_size(source, layout, count);
+  if (is_between) {
+    const std::uintmax_t from = std::exchange(layout.offset, 0);
+    return read_components(
+        with_components_last(source, from, values_before * each, components, bytes), layout, points,
+        range);
+  }
   return read_components(source, layout, points, range);
 }
 
@@ -160,7 +205,7 @@ VolumeFile open_nrrd_file(const std::filesystem::path& path, const std::string& 
     }
     if (order_is_known) {
       if (text.components_axis > 1) layout.interleaved = false;
-      return read_raw_values(*text.values, layout, points, range);
+      return read_raw_values(*text.values, layout, points, text.values_before, range);
     }
     return read_by_itk(path, layout, points, range, name);
   };

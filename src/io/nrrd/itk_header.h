@@ -39,6 +39,7 @@ struct NrrdText {
   bool left_anterior_superior = false;
   /// The axis that is none of space, from 1; 0 where there is none. ITK moves it to the front.
   std::size_t components_axis = 0;
+  std::size_t values_before = 1;     ///< along the axes in front of that one
   int cell_centred_axes = 0;         ///< of the three of space
   std::optional<NrrdValues> values;  ///< read from there where they are given
 };

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <initializer_list>
 #include <limits>
 #include <span>
 #include <sstream>
@@ -15,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "axes/time_steps.h"
 #include "files/data_stream.h"
 #include "files/input_file.h"
 #include "itk_header.h"
@@ -24,6 +26,7 @@
 #include "text/text.h"
 #include "volumes/components.h"
 #include "volumes/volume_format.h"
+#include "volumes/volume_steps.h"
 
 namespace pellucid {
 
@@ -340,6 +343,35 @@ void note_fields(const std::vector<Field>& fields, const MetaImageHeader& header
   note_ignored_keys(note, name, ignored);
 }
 
+/// Returns the steps of a fourth axis: by the times that PlusToolkit writes of each, else by the
+/// axis' origin and spacing.
+VolumeSteps steps_of(const std::vector<Field>& fields, std::size_t count) {
+  VolumeSteps steps;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::string number = std::to_string(i);
+    if (number.size() < 4) number.insert(0, 4 - number.size(), '0');
+    const std::vector<double> time =
+        numbers_of(value_of(fields, "Seq_Frame" + number + "_Timestamp"));
+    if (time.size() != 1) break;
+    steps.times.push_back(time.front());
+  }
+  if (steps.times.size() == count) {
+    steps.unit = "s";
+    return steps;
+  }
+  const auto fourth = [&](std::initializer_list<const char*> keys, double none) {
+    for (const char* const key : keys) {
+      const std::vector<double> numbers = numbers_of(value_of(fields, key));
+      if (numbers.size() > 3) return numbers[3];
+    }
+    return none;
+  };
+  const double step = fourth({"ElementSpacing", "ElementSize"}, 1);
+  steps.times =
+      even_times(count, fourth({"Offset", "Position", "Origin"}, 0), step == 0 ? 1 : step);
+  return steps;
+}
+
 /// MetaImage, .mha or .mhd, raw or zlib; values in one file or in one per slice. Channels and a
 /// fourth axis are components.
 VolumeFile open_meta_image(const fs::path& path, const ReadOptions& options) {
@@ -369,6 +401,14 @@ VolumeFile open_meta_image(const fs::path& path, const ReadOptions& options) {
                files = find_files(path, header, bytes)](ComponentRange range) {
     return read_files(files, header, points, range, note, name);
   };
+  const bool has_steps =
+      header.components > 1 && !header.interleaved && value_of(fields, "NDims") == "4";
+  if (has_steps) {
+    take_steps(steps_of(fields, static_cast<std::size_t>(header.components)), options, name + ": ",
+               file);
+  } else if (options.time) {
+    take_steps({}, options, name + ": ", file);
+  }
   return file;
 }
 
@@ -377,6 +417,7 @@ VolumeFile open_meta_image(const fs::path& path, const ReadOptions& options) {
 extern const VolumeFormat meta_image_format{.name = "MetaImage",
                                             .extensions = ".mha .mhd",
                                             .open = open_meta_image,
+                                            .has_times = true,
                                             .is_of_patients = true};
 
 }  // namespace pellucid

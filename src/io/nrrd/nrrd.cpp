@@ -19,6 +19,7 @@
 #include "nrrd_axes.h"
 #include "nrrd_fields.h"
 #include "nrrd_space.h"
+#include "nrrd_steps.h"
 #include "pellucid/io/internal/temporary_folder.h"
 #include "pellucid/scene/error.h"
 #include "text/text.h"
@@ -182,12 +183,22 @@ std::size_t find_components_axis(const Header& header, const std::string& name) 
   if (found == 0) found = axis_that_says(header, "spacedirections", {"none", "nan"});
   if (found == 0) found = axis_beside_space(header);
   refuse_second_axis(header, found, name);
-  if (found > 1 && found < axes) {
+  if (found > 1 && found < axes && axes > 4) {
     throw Error(name + ": axis " + std::to_string(found) + " of " + std::to_string(axes) +
-                " holds components, which are read of the first and of the last axis only; "
-                "permute the axes");
+                " holds components; save a volume of three axes of space as a file of its own");
   }
   return found;
+}
+
+// How many values lie along the axes in front of one, from 1.
+std::size_t values_before(const Header& header, std::size_t axis) {
+  const Line* line = find_field(header, "sizes");
+  std::size_t count = 1;
+  if (line == nullptr || axis == 0) return count;
+  const std::vector<std::string> sides = axes_of(line->value);
+  for (std::size_t a = 0; a + 1 < axis && a < sides.size(); ++a)
+    count *= number_in(sides[a]).value_or(1);
+  return count;
 }
 
 // ITK takes a spacing of 1 where NRRD says that it is unknown, or gives a range of each axis.
@@ -340,8 +351,9 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 /// NRRD, attached (.nrrd) or detached (.nhdr), raw, gzip, bzip2, ascii or hex. Turned from RAS or
 /// LAS to LPS; other spaces are taken as they are. Of a space of four axes the fourth is time.
-/// Cell-centred where all three axes say so. A first or last axis that is none of space, by its
-/// kind or for want of a direction, holds components, and so does a fourth axis.
+/// Cell-centred where all three axes say so. One of four axes that is none of space, by its kind or
+/// for want of a direction, holds components, and so does a fourth axis; steps in time by
+/// nrrd::steps_of().
 VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
@@ -349,10 +361,12 @@ VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
   Header header = nrrd::read_header(path);
   const nrrd::Space space = nrrd::space_of(header);
   nrrd::note_keys(header, space, name, options.note);
+  const Header as_written = header;
   nrrd::drop_time(header, name);
   NrrdText text;
   text.count = header_count(header, name);
   text.components_axis = find_components_axis(header, name);
+  text.values_before = values_before(header, text.components_axis);
   check_spacing(header, text.components_axis, options, name);
   nrrd::check_numbers(header, name);
   nrrd::note_axes(header, text.components_axis, name, options.note);
@@ -367,11 +381,17 @@ VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
                 ": its values are compressed with bzip2, which is read of one file, without a line "
                 "skip; save it with gzip");
   }
+  const VolumeSteps steps = nrrd::steps_of(as_written, text.components_axis);
+  const auto with_steps = [&](VolumeFile&& file) {
+    file.space = space.name;
+    if (options.time || (!steps.times.empty() && std::ssize(steps.times) == file.components)) {
+      take_steps(steps, options, name + ": ", file);
+    }
+    return std::move(file);
+  };
   const std::vector<std::string> mended = mended_header(header, text.components_axis, path);
   if (mended.empty()) {
-    VolumeFile file = open_nrrd_file(path, name, text, options);
-    file.space = space.name;
-    return file;
+    return with_steps(open_nrrd_file(path, name, text, options));
   }
   // A space is kept beside directions alone.
   if (find_field(header, "spacedirections") == nullptr) text.left_anterior_superior = false;
@@ -390,16 +410,18 @@ VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
     }
   };
   VolumeFile file = with_own_name([&] { return open_nrrd_file(mended_path, name, text, options); });
-  file.space = space.name;
   file.read = [with_own_name, read = std::move(file.read)](ComponentRange range) {
     return with_own_name([&] { return read(range); });
   };
-  return file;
+  return with_steps(std::move(file));
 }
 
 }  // namespace
 
-extern const VolumeFormat nrrd_format{
-    .name = "NRRD", .extensions = ".nrrd .nhdr", .open = open_nrrd, .is_of_patients = true};
+extern const VolumeFormat nrrd_format{.name = "NRRD",
+                                      .extensions = ".nrrd .nhdr",
+                                      .open = open_nrrd,
+                                      .has_times = true,
+                                      .is_of_patients = true};
 
 }  // namespace pellucid

@@ -7,6 +7,7 @@ pellucid_io_sources(
     nrrd_axes.cpp
     nrrd_fields.cpp
     nrrd_space.cpp
+    nrrd_steps.cpp
     write_nrrd.cpp
   LOOPS
     write_nrrd.cpp

@@ -10,6 +10,7 @@ pellucid_io_sources(
   LATER
     unread_formats.cpp
     volume_axes.cpp
+    volume_steps.cpp
     write_volume.cpp
   WEB
     left_out_formats.cpp

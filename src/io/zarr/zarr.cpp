@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <string>
@@ -98,13 +99,20 @@ std::vector<double> choose_time(const ZarrChoice& choice, const ReadOptions& opt
     refuse_movie(static_cast<std::size_t>(choice.array.shape[*axes.time]), z, options, name);
   }
   if (!axes.time) return {};
-  std::vector<double> times = zarr_times(choice, *axes.time, name);
+  const AxisPositions along = zarr_times(choice, *axes.time, name);
+  const std::vector<double>& times = along.numbers;
   if (!options.time) {
-    if (options.note && times.size() > 1) options.note(name + ": holds " + times_note(times));
+    if (options.note && times.size() > 1)
+      options.note(name + ": holds " + times_note(times, along.units));
     return times;
   }
+  if (std::ranges::all_of(times, [](double time) { return std::isnan(time); })) {
+    throw Error(name +
+                ": has steps, but their times are missing (NaN); choose one by its number, "
+                "as a component");
+  }
   const std::size_t step = nearest_step(times, options.time);
-  if (options.note) options.note(name + ": " + step_note(times, step, *options.time));
+  if (options.note) options.note(name + ": " + step_note(times, step, *options.time, along.units));
   axes.view.at[*axes.time] = static_cast<std::int64_t>(step);
   std::erase(axes.view.components, *axes.time);
   return times;

@@ -44,6 +44,7 @@ ZarrAxes plain_axes(const ZarrArray& array, const std::string& name, const ReadO
   axes.view.at.assign(array.shape.size(), 0);
   for (std::size_t place = 0; place < 3; ++place) axes.view.space[place] = found.space[place];
   if (found.components) axes.view.components = {*found.components};
+  if (found.are_steps) axes.time = found.components;
   if (options.note && !found.guess.empty()) {
     options.note(name + ": " + axes_note(array.shape, found));
   }
@@ -101,12 +102,14 @@ ZarrAxes zarr_axes(const ZarrChoice& choice, const std::string& name, const Read
   return plain_axes(array, name, options);
 }
 
-std::vector<double> zarr_times(const ZarrChoice& choice, std::size_t axis,
-                               const std::string& name) {
+AxisPositions zarr_times(const ZarrChoice& choice, std::size_t axis, const std::string& name) {
   if (!choice.image && !choice.array.dimension_names.empty()) {
     const ZarrVariable variable = zarr_variable(choice.folder, choice.named);
     AxisPositions times = zarr_positions(variable, axis);
-    if (!times.numbers.empty()) return std::move(times.numbers);
+    if (!times.numbers.empty()) {
+      times.units = printable(times.units);
+      return times;
+    }
   }
   const std::int64_t count = choice.array.shape[axis];
   constexpr std::int64_t most = std::int64_t{1} << 24;
@@ -114,9 +117,12 @@ std::vector<double> zarr_times(const ZarrChoice& choice, std::size_t axis,
     throw Error(name + ": has " + std::to_string(count) + " steps in time, too many to be read");
   }
   const OmeLevel* const level = choice.image ? &choice.image->levels[choice.level] : nullptr;
-  return even_times(static_cast<std::size_t>(count),
-                    level == nullptr ? 0 : level->translation[axis],
-                    level == nullptr ? 1 : level->scale[axis]);
+  AxisPositions times;
+  times.numbers =
+      even_times(static_cast<std::size_t>(count), level == nullptr ? 0 : level->translation[axis],
+                 level == nullptr ? 1 : level->scale[axis]);
+  if (choice.image) times.units = printable(choice.image->axes[axis].unit);
+  return times;
 }
 
 std::string zarr_holds(const ZarrChoice& choice, const ZarrAxes& axes) {

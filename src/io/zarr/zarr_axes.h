@@ -24,8 +24,9 @@ ZarrAxes zarr_axes(const ZarrChoice& choice, const std::string& name, const Read
 /// Throws Error where the names of an array's axes are those of no volume.
 void check_zarr_axes(const std::filesystem::path& folder, const ZarrArray& array);
 
-/// Returns the times of all steps along an axis. Throws Error that begins with `name` for too many.
-std::vector<double> zarr_times(const ZarrChoice& choice, std::size_t axis, const std::string& name);
+/// Returns the times of all steps along an axis, with their unit. Throws Error that begins with
+/// `name` for too many.
+AxisPositions zarr_times(const ZarrChoice& choice, std::size_t axis, const std::string& name);
 /// Returns "2 times of 3 channels (DAPI, GFP, RFP)".
 std::string zarr_holds(const ZarrChoice& choice, const ZarrAxes& axes);
 
