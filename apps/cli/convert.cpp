@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "arguments/input.h"
+#include "arguments/mesh_input.h"
 #include "arguments/output.h"
 #include "arguments/overwriting.h"
 #include "arguments/parse.h"
@@ -31,6 +32,7 @@ namespace {
 struct ConvertArguments {
   std::string input, output, q;
   std::optional<double> time;
+  std::string time_between;
   VolumeOptions volume;
   int threads = 0;
   bool json = false, quiet = false;
@@ -80,12 +82,14 @@ std::size_t count_cells(const Volume& volume) {
 FieldSource volume_source(const ConvertArguments& arguments) {
   FieldSource source = field_source(arguments.input, arguments.volume);
   source.options.time = arguments.time;
+  source.options.time_between = between_steps(arguments.time_between, arguments.time.has_value());
   return source;
 }
 
 Converted convert(const ConvertArguments& arguments, const ParallelFor& parallel) {
   if (arguments.is_mesh()) {
     MeshReadOptions options{arguments.time, arguments.q};
+    options.time_between = between_steps(arguments.time_between, arguments.time.has_value());
     if (!arguments.quiet) options.note = print_note;
     const MeshFile file = read_mesh(arguments.input, options);
     InterruptGuard::check();
@@ -191,10 +195,7 @@ Command add_convert(CommandLine& app) {
                       writable_volume_extensions()))
       ->option_text("FILE")
       ->required();
-  command
-      .add_option("--time", arguments->time,
-                  "Read the step nearest to this time. Default: the first of a mesh")
-      ->option_text("T");
+  add_time_options(command, arguments->time, arguments->time_between);
   command.add_option("--solution", arguments->q, "PLOT3D solution; INPUT is then a PLOT3D grid")
       ->option_text("FILE");
   command.add_flag("--json", arguments->json, "Print a report of what was written as JSON");

@@ -25,7 +25,7 @@ from ._pellucid import (Cancelled, Channels, Error, Frame, Gaussians, GradientOp
                         label_count, linear_to_srgb, load_scene, looks,
                         make_preset, presets, projection_transfer_function, read,
                         read_image, read_mesh, read_volume, render_reference, srgb_to_linear,
-                        suggest, suggest_boundaries, view_camera)
+                        suggest, suggest_boundaries, times, view_camera)
 from ._colormaps import from_colormap
 from ._films import animate, frames
 from ._image import Comparison
@@ -52,5 +52,5 @@ __all__ = [
     "make_preset", "mesh_of", "presets",
     "projection_transfer_function", "read", "read_image", "read_mesh", "read_volume", "render",
     "render_on_ranks", "render_reference", "scene_of", "srgb_to_linear", "suggest",
-    "suggest_boundaries", "view", "view_camera",
+    "suggest_boundaries", "times", "view", "view_camera",
 ]

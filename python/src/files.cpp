@@ -9,6 +9,7 @@
 #include "pellucid/io/dicom_series.h"
 #include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/io/internal/color_data.h"
+#include "pellucid/io/time_steps.h"
 #include "scenes.h"
 
 namespace pellucid::python {
@@ -42,14 +43,42 @@ std::optional<Vec3<double>> from_zyx(const py::object& object, const char* what)
   return Vec3<double>{v.z, v.y, v.x};
 }
 
+TimeBetween between_steps(const std::string& text, bool has_time) {
+  if (text == "nearest") return TimeBetween::nearest;
+  if (text != "linear") {
+    throw Error("time_between: expected \"nearest\" or \"linear\", got \"" + text + "\"");
+  }
+  if (!has_time) throw Error("time_between: \"linear\" needs a time; give one");
+  return TimeBetween::linear;
+}
+
+std::vector<double> times_of_file(const std::filesystem::path& path,
+                                  const std::optional<std::string>& array,
+                                  const std::optional<std::string>& series,
+                                  const std::optional<int>& level,
+                                  const std::optional<std::string>& axes) {
+  if (is_mesh_file(path)) {
+    MeshSource source;
+    source.file = path;
+    return source_times(source);
+  }
+  FieldSource source = parse_field_source(path.string());
+  source.options.array = array;
+  source.options.series = series;
+  source.options.level = level;
+  source.options.axes = axes;
+  return source_times(source);
+}
+
 VolumeHandle read_volume_file(
     const std::filesystem::path& path, const std::optional<std::string>& array,
     const std::optional<std::variant<int, std::string>>& component,
-    const std::optional<double>& time, const std::optional<std::string>& series,
-    const std::optional<int>& level, const std::optional<std::string>& axes,
-    const std::optional<std::array<int, 3>>& shape, const std::optional<std::string>& type,
-    const std::optional<bool>& big_endian, std::size_t skip_bytes, const py::object& spacing,
-    const py::object& origin, const std::optional<std::string>& centering) {
+    const std::optional<double>& time, const std::string& time_between,
+    const std::optional<std::string>& series, const std::optional<int>& level,
+    const std::optional<std::string>& axes, const std::optional<std::array<int, 3>>& shape,
+    const std::optional<std::string>& type, const std::optional<bool>& big_endian,
+    std::size_t skip_bytes, const py::object& spacing, const py::object& origin,
+    const std::optional<std::string>& centering) {
   FieldSource source;
   source.file = path;
   ReadOptions& options = source.options;
@@ -60,6 +89,7 @@ VolumeHandle read_volume_file(
     options.component_name = std::get<std::string>(*component);
   }
   options.time = time;
+  options.time_between = between_steps(time_between, time.has_value());
   options.series = series;
   options.level = level;
   options.axes = axes;
@@ -91,11 +121,12 @@ MeshHandle read_mesh_source(MeshSource source) {
 
 MeshHandle read_mesh_file(const std::filesystem::path& path,
                           const std::vector<std::string>& channels,
-                          const std::optional<double>& time,
+                          const std::optional<double>& time, const std::string& time_between,
                           const std::optional<std::filesystem::path>& q) {
   MeshSource source;
   source.file = path;
   source.options.time = time;
+  source.options.time_between = between_steps(time_between, time.has_value());
   if (q) source.options.q = *q;
   for (const std::string& text : channels) source.channels.push_back(parse_mesh_array(text));
   return read_mesh_source(std::move(source));
@@ -186,28 +217,36 @@ void save_scene_file(const py::object& object, const std::filesystem::path& path
 void bind_files(py::module_& module) {
   module.def("read_volume", &read_volume_file, py::arg("path"), py::kw_only(),
              py::arg("array") = py::none(), py::arg("component") = py::none(),
-             py::arg("time") = py::none(), py::arg("series") = py::none(),
-             py::arg("level") = py::none(), py::arg("axes") = py::none(),
-             py::arg("shape") = py::none(), py::arg("type") = py::none(),
-             py::arg("big_endian") = py::none(), py::arg("skip_bytes") = 0,
-             py::arg("spacing") = py::none(), py::arg("origin") = py::none(),
-             py::arg("centering") = py::none(), R"(
+             py::arg("time") = py::none(), py::arg("time_between") = "nearest",
+             py::arg("series") = py::none(), py::arg("level") = py::none(),
+             py::arg("axes") = py::none(), py::arg("shape") = py::none(),
+             py::arg("type") = py::none(), py::arg("big_endian") = py::none(),
+             py::arg("skip_bytes") = 0, py::arg("spacing") = py::none(),
+             py::arg("origin") = py::none(), py::arg("centering") = py::none(), R"(
 Reads a volume file: NIfTI, NRRD, MetaImage, DICOM, NumPy, HDF5, NetCDF, OME-Zarr, MRC, OpenVDB,
 VTK images, stacks of TIFF, raw data, … (docs/reference/formats.md).
 
-array names an array of the file, component one of its components (from 0, or by name), time a
-step in time; series is a DICOM series (number or UID) or an image of OME-TIFF (number or name),
+array names an array of the file, component one of its components (from 0, or by name). time takes
+the step nearest to it (see times()); with time_between="linear" the values between two steps are
+linear in time. series is a DICOM series (number or UID) or an image of OME-TIFF (number or name),
 level a resolution of OME-Zarr, axes the letters of an array's axes ("zyx", "czyx"). shape
 (z, y, x), type ("u8" … "f64"), big_endian and skip_bytes are
 for raw data. spacing and origin (z, y, x) and centering replace the file's. Warns of what is
 assumed. Raises Error: what, where, what to do.)");
   module.def("read_mesh", &read_mesh_file, py::arg("path"), py::kw_only(),
              py::arg("channels") = std::vector<std::string>(), py::arg("time") = py::none(),
-             py::arg("q") = py::none(), R"(
+             py::arg("time_between") = "nearest", py::arg("q") = py::none(), R"(
 Reads a mesh file: VTK (.vtu, .pvtu, .vts, .vtm, .vtk, .pvd, .vtkhdf), Exodus, PLOT3D.
 
 channels are the arrays to show, "ARRAY", "ARRAY:C" or "NAME=ARRAY"; default: the active scalars.
-time chooses the nearest time step; q is the solution file of a PLOT3D grid. Raises Error.)");
+time chooses the nearest time step; with time_between="linear" the values between two steps are
+linear in time. q is the solution file of a PLOT3D grid. Raises Error.)");
+  module.def("times", &times_of_file, py::arg("path"), py::kw_only(), py::arg("array") = py::none(),
+             py::arg("series") = py::none(), py::arg("level") = py::none(),
+             py::arg("axes") = py::none(), R"(
+Returns the times of the steps of a volume or a mesh file, ascending, in the file's unit; an empty
+list if it has none. Reads headers, no values. array, series, level and axes as in read_volume.
+Raises Error.)");
   module.def(
       "read",
       [](const py::object& path) {

@@ -13,6 +13,28 @@ constexpr const char* group = "Options of mesh files";
 
 }  // namespace
 
+std::array<Option*, 2> add_time_options(CommandLine& command, std::optional<double>& time,
+                                        std::string& between) {
+  Option* const at = command
+                         .add_option("--time", time,
+                                     "Read the step nearest to this time. Default: the first of a "
+                                     "mesh")
+                         ->option_text("T");
+  Option* const how =
+      command
+          .add_option("--time-between", between,
+                      "Values at a time between two steps: nearest, those of the nearest step "
+                      "(default), or linear, of both")
+          ->one_of({"nearest", "linear"})
+          ->option_text("HOW");
+  return {at, how};
+}
+
+TimeBetween between_steps(const std::string& text, bool has_time) {
+  if (!text.empty() && !has_time) throw UsageError("--time-between needs a --time");
+  return text == "linear" ? TimeBetween::linear : TimeBetween::nearest;
+}
+
 void MeshOptions::add_to(CommandLine& command, bool with_arrays) {
   const auto add = [&](Option* option) { given.push_back(option->group(group)); };
   if (with_arrays) {
@@ -25,10 +47,7 @@ void MeshOptions::add_to(CommandLine& command, bool with_arrays) {
             ->option_text("[NAME=]ARRAY[:C]")
             ->allow_extra_args(false));
   }
-  add(command
-          .add_option("--time", time,
-                      "Read the step nearest to this time. Default: the first of a mesh")
-          ->option_text("T"));
+  for (Option* const option : add_time_options(command, time, time_between)) add(option);
   add(command.add_option("--solution", q, "PLOT3D solution; INPUT is then a PLOT3D grid")
           ->option_text("FILE"));
 }
@@ -59,7 +78,8 @@ bool is_mesh(const std::string& input, const MeshOptions& options) {
 MeshSource mesh_source(const std::string& input, const MeshOptions& options) {
   MeshSource source;
   source.file = input;
-  source.options = {options.time, options.q};
+  options.set_time(source.options);
+  source.options.q = options.q;
   try {
     for (const std::string& text : options.arrays) {
       source.channels.push_back(parse_mesh_array(text));

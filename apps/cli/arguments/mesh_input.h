@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,10 +12,18 @@
 
 namespace pellucid::cli {
 
+/// Adds --time and --time-between, into these, and returns them.
+std::array<Option*, 2> add_time_options(CommandLine& command, std::optional<double>& time,
+                                        std::string& between);
+/// Returns what --time-between says; "": the nearest step. Throws UsageError where there is no
+/// time.
+TimeBetween between_steps(const std::string& text, bool has_time);
+
 /// The options that say what of a mesh file is read.
 struct MeshOptions {
   std::string q;
   std::optional<double> time;
+  std::string time_between;         ///< "nearest", "linear"; empty: not given
   std::vector<std::string> arrays;  ///< [NAME=]ARRAY[:C]
   std::vector<Option*> given;       ///< all of them, to ask which were used
 
@@ -22,6 +31,12 @@ struct MeshOptions {
   void add_to(CommandLine& command, bool with_arrays);
   /// Throws UsageError where an option is used, saying that it does not apply to `what`.
   void refuse(const std::string& what) const;
+  /// Puts the time into the options of a volume or a mesh. Throws UsageError.
+  template <class Options>
+  void set_time(Options& options) const {
+    options.time = time;
+    options.time_between = between_steps(time_between, time.has_value());
+  }
   /// The same of `--solution` alone: volume files have arrays and times too.
   void refuse_q(const std::string& what) const;
 };

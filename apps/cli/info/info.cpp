@@ -38,7 +38,7 @@ struct InfoArguments {
 
 /// Facts of a file, gathered once for the text and for the JSON.
 struct Facts {
-  std::size_t bytes = 0;     ///< of all components
+  std::size_t bytes = 0;     ///< bytes of all components
   std::vector<double> mean;  ///< of the finite values of each
   Vec3<double> world_lower, world_upper;
   std::string space;  ///< of the world, as the file names it
@@ -46,7 +46,7 @@ struct Facts {
   Orientation orientation;
   std::string unit;                                ///< of the values; empty: the file names none
   std::vector<std::optional<std::size_t>> labels;  ///< label_count of each component
-  std::vector<double> times;                       ///< of the steps; empty: there are none
+  std::vector<double> times;                       ///< times of the steps; empty: there are none
 };
 
 double mean_of(const Volume& volume) {
@@ -292,7 +292,7 @@ int run_info(const InfoArguments& arguments) {
   FieldSource source = field_source(arguments.input, arguments.volume);
   if (!source.builtin.empty()) arguments.mesh.refuse("a built-in field");
   arguments.mesh.refuse_q("a volume");
-  source.options.time = arguments.mesh.time;
+  arguments.mesh.set_time(source.options);
   if (print_series(source, arguments.input, arguments.json)) return 0;
   set_notes(source, false);
   std::vector<Volume> components;

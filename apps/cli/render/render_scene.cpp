@@ -232,7 +232,7 @@ void set_volume(const RenderArguments& arguments, LayerDescription& description)
   arguments.mesh.refuse_q("a volume");
   FieldSource field = field_source(arguments.input, arguments.volume);
   if (!field.builtin.empty()) arguments.mesh.refuse("a built-in field");
-  field.options.time = arguments.mesh.time;
+  arguments.mesh.set_time(field.options);
   std::vector<MeshArrayChoice> choices;
   for (const std::string& text : arguments.mesh.arrays) {
     choices.push_back(parse_argument("--array", [&] { return parse_mesh_array(text); }));

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "pellucid/io/time_between.h"
 #include "pellucid/scene/unstructured_grid.h"
 
 namespace pellucid {
@@ -22,6 +23,8 @@ struct MeshReadOptions {
   std::filesystem::path q{};
   /// Receives MeshFile::notes and the message about overlapping cells; may be empty.
   std::function<void(const std::string&)> note{};
+  /// `linear` needs a time, and steps with the same points and cells.
+  TimeBetween time_between = TimeBetween::nearest;
 };
 
 /// Content of a mesh file at one time.
@@ -31,7 +34,7 @@ struct MeshFile {
   std::string format;          ///< "VTK XML", "legacy VTK", "Exodus II", "VTKHDF", "PLOT3D"
   std::string active;          ///< the array that the file marks as its scalars; may be empty
   std::vector<double> times;   ///< of the time steps, ascending; empty: the file has no time
-  std::optional<double> time;  ///< of the step that was read
+  std::optional<double> time;  ///< of the step that was read, or between two
   int blocks = 1;
   std::size_t flat_cells = 0;   ///< cells of dimension two and less, left out
   std::size_t ghost_cells = 0;  ///< ghost cells and hidden cells, left out

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pellucid/io/time_between.h"
 #include "pellucid/scene/sub_volume.h"
 #include "pellucid/scene/volume.h"
 
@@ -27,8 +28,9 @@ struct ReadOptions {
   std::optional<int> component;         ///< component to read, from 0
   /// Component to read by the file's name of it, such as that of a channel; `component` goes first.
   std::optional<std::string> component_name;
-  /// NetCDF, HDF5, Zarr, TIFF, VTK XML: reads the nearest step in time, not a component.
+  /// Files with steps in time (source_times()): reads the nearest step, not a component.
   std::optional<double> time;
+  TimeBetween time_between = TimeBetween::nearest;  ///< needs a time
   std::optional<std::string> array;  ///< name of the array to read; none: see VolumeArray
   /// .npy, .npz, HDF5, and Zarr and tifffile's arrays that do not name their axes: a letter for
   /// each axis of the array, in the order of its indices: x, y and z, and c for components ("xyz",

@@ -16,7 +16,7 @@ namespace pellucid {
 struct ArrayAxes {
   std::array<std::size_t, 3> space{};     ///< those of x, y and z
   std::optional<std::size_t> components;  ///< the one beside them
-  bool are_steps = false;                 ///< whether its letter is t, for steps in time
+  bool are_steps = false;                 ///< says that its letter is t, for steps in time
   std::string guess;  ///< letters of four axes that nobody named: "czyx"; else empty
 };
 

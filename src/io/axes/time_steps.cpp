@@ -39,6 +39,22 @@ std::string step_note(const std::vector<double>& times, std::size_t step, double
          (times[step] == wanted ? "" : " (nearest to " + written(wanted) + ")");
 }
 
+std::optional<MomentBetween> moment_between(const std::vector<double>& times, double time) {
+  std::optional<double> before, after;
+  for (const double step : times) {
+    if (step == time) return std::nullopt;
+    if (step < time && (!before || step > *before)) before = step;
+    if (step > time && (!after || step < *after)) after = step;
+  }
+  if (!before || !after) return std::nullopt;
+  return MomentBetween{*before, *after, (time - *before) / (*after - *before)};
+}
+
+std::string moment_note(const MomentBetween& moment, double time) {
+  return "time " + written(time) + " lies between the steps " + written(moment.before) + " and " +
+         written(moment.after) + "; values are linear between them";
+}
+
 void refuse_movie(std::size_t times, std::int64_t planes, const ReadOptions& options,
                   const std::string& name) {
   if (times < 2 || planes > 1 || options.centering == Centering::cell) return;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,17 @@ std::string step_note(const std::vector<double>& times, std::size_t step, double
 
 /// Returns the times of steps that follow each other at one distance.
 std::vector<double> even_times(std::size_t count, double first, double step);
+
+/// A time between two steps, which are next to each other.
+struct MomentBetween {
+  double before = 0, after = 0;
+  double share = 0;  ///< part of the way from `before`, above 0 and below 1
+};
+/// Returns the steps around a time; nothing where it is that of a step, or beyond the first or the
+/// last. `times` are in any order.
+std::optional<MomentBetween> moment_between(const std::vector<double>& times, double time);
+/// Returns "time 2.5 lies between the steps 2 and 3; values are linear between them".
+std::string moment_note(const MomentBetween& moment, double time);
 
 /// Throws Error that begins with `name` if there are two or more times of one plane each, which is
 /// no volume, unless `options.centering` is `cell`.

@@ -26,7 +26,7 @@ struct GridArray {
   int components = 1;
   std::string holds;             ///< what several are: "12 steps (axis time)"
   std::vector<double> times;     ///< of these steps, where the file says them
-  std::string times_unit;        ///< as the file has it: "hours since 2000-01-01"
+  std::string times_unit;        ///< text of the file: "hours since 2000-01-01"
   int components_of_a_step = 1;  ///< components that lie inside one step, the fastest ones
   std::array<AxisPositions, 3> positions;  ///< along x, y, z
   std::optional<GridPlacement> placement;  ///< in place of positions

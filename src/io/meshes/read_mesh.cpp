@@ -3,15 +3,18 @@
 
 #include <algorithm>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
+#include "axes/time_steps.h"
 #include "files/input_file.h"
 #include "files/memory_limit.h"
 #include "mesh_format.h"
 #include "pellucid/scene/error.h"
 #include "text/text.h"
+#include "volumes/volume_steps.h"
 #include "vtk/vtk_collection.h"
 #include "vtk/vtk_file_kind.h"
 
@@ -55,11 +58,81 @@ const MeshFormat& format_of(const std::filesystem::path& path, const MeshReadOpt
               mesh_extensions());
 }
 
-MeshBlocks read_blocks(const std::filesystem::path& path, const MeshReadOptions& options) {
+MeshBlocks read_step(const std::filesystem::path& path, const MeshReadOptions& options) {
   const std::uintmax_t bytes = check_input_file(path);
   // VTK's copy beside ours; what is compressed takes more.
   check_memory(2 * bytes, path.string() + ": its mesh");
   return format_of(path, options).read(path, options);
+}
+
+bool are_equal(const Vec3<double>& a, const Vec3<double>& b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+bool have_same_cells(const UnstructuredGrid& a, const UnstructuredGrid& b) {
+  return std::ranges::equal(a.points, b.points, are_equal) && a.shapes == b.shapes &&
+         a.corners == b.corners && a.layouts == b.layouts;
+}
+
+/// Puts values between those of two steps into the blocks of the first. Arrays that one of them
+/// lacks are left out, with a note.
+void put_between(MeshBlocks& before, const MeshBlocks& after, double share,
+                 const std::string& name) {
+  const bool are_alike = std::ranges::equal(before.blocks, after.blocks, have_same_cells);
+  if (!are_alike) {
+    throw Error(name +
+                ": the steps around the time have different points or cells, so nothing is linear "
+                "between them; take the nearest step");
+  }
+  const auto size = [](const MeshArray& array) {
+    return std::visit([](const auto& values) { return values.size(); }, array.values);
+  };
+  std::vector<std::string> left_out;
+  for (std::size_t b = 0; b < before.blocks.size(); ++b) {
+    const std::vector<MeshArray>& others = after.blocks[b].arrays;
+    std::erase_if(before.blocks[b].arrays, [&](MeshArray& array) {
+      const auto other = std::ranges::find_if(others, [&](const MeshArray& one) {
+        return one.name == array.name && one.centering == array.centering &&
+               one.components == array.components && size(one) == size(array);
+      });
+      if (other != others.end()) {
+        array.values = values_between(array.values, other->values, share);
+        return false;
+      }
+      if (std::ranges::find(left_out, array.name) == left_out.end()) {
+        left_out.push_back(array.name);
+      }
+      return true;
+    });
+  }
+  for (const std::string& array : left_out) {
+    before.file.notes.push_back("the array \"" + array +
+                                "\" is in one of the two steps alone, and left out");
+  }
+}
+
+MeshBlocks read_blocks(const std::filesystem::path& path, const MeshReadOptions& options) {
+  if (options.time_between != TimeBetween::linear) return read_step(path, options);
+  if (!options.time) {
+    throw Error(path.string() + ": linear between steps in time needs a time; give one");
+  }
+  const std::optional<MomentBetween> moment =
+      moment_between(mesh_times(path, options), *options.time);
+  if (!moment) return read_step(path, options);
+  MeshReadOptions at = options;
+  at.time = moment->before;
+  MeshBlocks mesh = read_step(path, at);
+  at.time = moment->after;
+  const MeshBlocks after = read_step(path, at);
+  put_between(mesh, after, moment->share, path.string());
+  for (const std::string& note : after.file.notes) {
+    if (std::ranges::find(mesh.file.notes, note) == mesh.file.notes.end()) {
+      mesh.file.notes.push_back(note);
+    }
+  }
+  mesh.file.notes.push_back(moment_note(*moment, *options.time));
+  mesh.file.time = options.time;
+  return mesh;
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ struct NiftiHeader {
   std::array<std::int64_t, 3> dimensions{};
   ValueLayout layout;
   std::string holds;                ///< what its several components are
-  std::vector<double> times;        ///< of its steps; empty: its components are none
+  std::vector<double> times;        ///< times of its steps; empty: its components are none
   std::string time_unit;            ///< "s"; empty: it says none
   double slope = 1, intercept = 0;  ///< value = slope · stored + intercept; 1, 0: as stored
   std::array<double, 3> spacing{};  ///< as written, maybe not positive

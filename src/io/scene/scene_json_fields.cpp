@@ -22,10 +22,10 @@ bool is_raw(std::string file) {
   return file.ends_with(".raw") || file.ends_with(".raw.gz");
 }
 
-const std::vector<std::string_view> file_keys{"file",       "array",   "time",       "component",
-                                              "dimensions", "type",    "components", "byte_order",
-                                              "skip_bytes", "spacing", "origin",     "centering",
-                                              "series",     "axes",    "level"};
+const std::vector<std::string_view> file_keys{"file",       "array",      "time",    "time_between",
+                                              "component",  "dimensions", "type",    "components",
+                                              "byte_order", "skip_bytes", "spacing", "origin",
+                                              "centering",  "series",     "axes",    "level"};
 const std::vector<std::string_view> builtin_keys{"builtin", "points"};
 const std::vector<std::string_view> channel_keys{"name", "unit"};
 
@@ -89,7 +89,7 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
   if (const auto axes = field.find("axes")) {
     source.options.axes = checked(*axes, [&] { return checked_axes(axes->string()); });
   }
-  if (const auto time = field.find("time")) source.options.time = time->number();
+  read_time(field, source.options.time, source.options.time_between);
   if (const auto component = field.find("component"); component && component->is_string()) {
     text("component", source.options.component_name, "give its number or its name");
   } else {
@@ -169,6 +169,14 @@ std::filesystem::path file_path(const Node& file, const std::filesystem::path& f
   if (path.empty()) file.fail("is empty; give the path of a file");
   if (path.find('\0') != std::string::npos) file.fail("has a NUL character");
   return folder / std::filesystem::path(std::u8string(path.begin(), path.end()));
+}
+
+void read_time(const Node& source, std::optional<double>& time, TimeBetween& between) {
+  if (const auto node = source.find("time")) time = node->number();
+  const auto node = source.find("time_between");
+  if (!node) return;
+  if (!time) node->fail("makes no sense without \"time\"; give one");
+  between = node->one_of({"nearest", "linear"}) == 1 ? TimeBetween::linear : TimeBetween::nearest;
 }
 
 FieldSource field_source(const Node& field, const std::filesystem::path& folder) {

@@ -39,10 +39,10 @@ std::vector<MeshArrayChoice> array_choices(const Node& list) {
 }  // namespace
 
 MeshSource mesh_source(const Node& mesh, const std::filesystem::path& folder) {
-  mesh.expect_object({"file", "time", "q", "array", "component", "channels"});
+  mesh.expect_object({"file", "time", "time_between", "q", "array", "component", "channels"});
   MeshSource source;
   source.file = file_path(mesh.at("file", "give the path of a mesh file"), folder);
-  if (const auto time = mesh.find("time")) source.options.time = time->number();
+  read_time(mesh, source.options.time, source.options.time_between);
   if (const auto q = mesh.find("q")) source.options.q = file_path(*q, folder);
   if (const auto channels = mesh.find("channels")) {
     for (const char* key : {"array", "component"}) {

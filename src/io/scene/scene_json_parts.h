@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,8 @@ std::vector<std::vector<double>> matrix(const Node& rows, std::size_t columns);
 /// Returns a string that is_channel_name().
 std::string channel_name(const Node& node);
 
+/// Reads "time" and "time_between" of a field or a mesh.
+void read_time(const Node& source, std::optional<double>& time, TimeBetween& between);
 FieldSource field_source(const Node& field, const std::filesystem::path& folder);
 /// Returns the same, beside other keys.
 FieldSource field_source_beside(const Node& field, const std::filesystem::path& folder,

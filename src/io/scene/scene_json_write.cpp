@@ -267,6 +267,12 @@ std::string lines_text(const Part& part, const std::string& indent) {
   return fields_text(part, Members(indent));
 }
 
+void add_time(const std::optional<double>& time, TimeBetween between, Members& members) {
+  if (!time) return;
+  members.add("time", number(*time, "the time"));
+  if (between == TimeBetween::linear) members.add("time_between", "\"linear\"");
+}
+
 void add_field(const FieldSource& field, Members& members) {
   if (!field.builtin.empty()) {
     members.add("builtin", quoted(field.builtin, "a name"));
@@ -284,7 +290,7 @@ void add_field(const FieldSource& field, Members& members) {
   if (options.components) members.add("components", std::to_string(*options.components));
   if (options.array) members.add("array", quoted(*options.array, "the name of an array"));
   if (options.axes) members.add("axes", quoted(*options.axes, "the axes"));
-  if (options.time) members.add("time", number(*options.time, "the time"));
+  add_time(options.time, options.time_between, members);
   if (options.component) {
     members.add("component", std::to_string(*options.component));
   } else if (options.component_name) {
@@ -334,7 +340,7 @@ std::string array_choice_text(const MeshArrayChoice& choice) {
 std::string mesh_text(const MeshSource& mesh, const std::string& indent) {
   Members members(indent);
   members.add("file", path_text(mesh.file, "the path of the mesh"));
-  if (mesh.options.time) members.add("time", number(*mesh.options.time, "the time"));
+  add_time(mesh.options.time, mesh.options.time_between, members);
   if (!mesh.options.q.empty()) members.add("q", path_text(mesh.options.q, "the path of q"));
   if (!mesh.channels.empty()) {
     members.add("channels", lines_of(mesh.channels, indent, array_choice_text));

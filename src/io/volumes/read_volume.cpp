@@ -4,14 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
+#include "axes/time_steps.h"
 #include "components.h"
 #include "dicom/dicom_slices.h"
 #include "pellucid/io/internal/color_data.h"
 #include "pellucid/scene/error.h"
 #include "volume_format.h"
+#include "volume_steps.h"
 
 namespace pellucid {
 
@@ -77,6 +81,41 @@ auto open_and(const std::filesystem::path& path, const ReadOptions& options, con
   return made;
 }
 
+/// Returns the steps around the time that the options ask for, where values are to be linear
+/// between them.
+std::optional<MomentBetween> moment_of(const std::filesystem::path& path,
+                                       const ReadOptions& options) {
+  if (options.time_between != TimeBetween::linear) return std::nullopt;
+  if (!options.time) {
+    throw Error(path.string() + ": linear between steps in time needs a time; give one");
+  }
+  return moment_between(volume_times(path, options), *options.time);
+}
+
+/// Returns what `mix` makes of the results of `read` at both steps. Notes are told once, and only
+/// if there is no error.
+template <class Read, class Mix>
+auto read_between(const std::filesystem::path& path, const ReadOptions& options,
+                  const MomentBetween& moment, const Read& read, const Mix& mix) {
+  std::vector<std::string> notes;
+  ReadOptions at = options;
+  at.time_between = TimeBetween::nearest;
+  if (options.note) {
+    at.note = [&](const std::string& text) {
+      if (std::ranges::find(notes, text) == notes.end()) notes.push_back(text);
+    };
+  }
+  at.time = moment.before;
+  auto before = read(at);
+  at.time = moment.after;
+  auto after = read(at);
+  auto mixed = with_memory(path, [&] { return mix(before, after); });
+  if (!options.note) return mixed;
+  for (const std::string& text : notes) options.note(text);
+  options.note(path.string() + ": " + moment_note(moment, *options.time));
+  return mixed;
+}
+
 }  // namespace
 
 VolumeOutline outline_volume(const std::filesystem::path& path, const ReadOptions& options) {
@@ -86,6 +125,13 @@ VolumeOutline outline_volume(const std::filesystem::path& path, const ReadOption
 }
 
 Volume read_volume(const std::filesystem::path& path, const ReadOptions& options) {
+  if (const std::optional<MomentBetween> moment = moment_of(path, options)) {
+    return read_between(
+        path, options, *moment, [&](const ReadOptions& at) { return read_volume(path, at); },
+        [&](const Volume& before, const Volume& after) {
+          return volume_between(before, after, path.string(), moment->share);
+        });
+  }
   return open_and(path, options,
                   [&](const VolumeFile& file) { return read_chosen(file, options); });
 }
@@ -95,6 +141,8 @@ std::vector<double> volume_times(const std::filesystem::path& path, const ReadOp
   quiet.time.reset();
   quiet.part = {};
   quiet.note = {};
+  const auto times = find_volume_format(path, quiet).times;
+  if (times != nullptr) return with_memory(path, [&] { return times(path, quiet); });
   return open_and(path, quiet, [](const VolumeFile& file) { return file.times; });
 }
 
@@ -124,6 +172,19 @@ std::vector<Volume> read_components(const std::filesystem::path& path, const Rea
 
 NamedComponents read_named_components(const std::filesystem::path& path,
                                       const ReadOptions& options) {
+  if (const std::optional<MomentBetween> moment = moment_of(path, options)) {
+    return read_between(
+        path, options, *moment,
+        [&](const ReadOptions& at) { return read_named_components(path, at); },
+        [&](NamedComponents& before, const NamedComponents& after) {
+          const std::size_t count = std::min(before.components.size(), after.components.size());
+          for (std::size_t c = 0; c < count; ++c) {
+            before.components[c] = volume_between(before.components[c], after.components[c],
+                                                  path.string(), moment->share);
+          }
+          return std::move(before);
+        });
+  }
   return open_and(path, options, [&](const VolumeFile& file) {
     return NamedComponents{file.array, read_all(file, options)};
   });

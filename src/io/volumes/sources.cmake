@@ -18,4 +18,5 @@ pellucid_io_sources(
     components.cpp
     stored_numbers.cpp
     volume_axes.cpp
-    volume_source.cpp)
+    volume_source.cpp
+    volume_steps.cpp)

@@ -52,6 +52,10 @@ struct VolumeFormat {
   VolumeFile (*open_without)(const std::vector<DamagedDicomFile>& damaged,
                              const std::filesystem::path& path,
                              const ReadOptions& options) = nullptr;
+  /// Returns the times of the steps, where opening without a time does not; null: it does. Throws
+  /// Error.
+  std::vector<double> (*times)(const std::filesystem::path& path,
+                               const ReadOptions& options) = nullptr;
   bool has_header = true;
   bool takes_axes = false;  ///< whether the options say which axes are x, y and z
   bool has_levels = false;  ///< of resolution

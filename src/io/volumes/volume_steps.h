@@ -12,7 +12,7 @@ namespace pellucid {
 /// Steps in time among the components of a file.
 struct VolumeSteps {
   std::vector<double> times = {};  ///< in the order of the file; NaN: the file lacks it
-  std::string unit = {};           ///< of the times, as the file has it; empty: it says none
+  std::string unit = {};           ///< unit of the times; empty: the file says none
   int inside = 1;                  ///< components that lie inside one step, the fastest ones
 };
 
@@ -23,5 +23,12 @@ struct VolumeSteps {
 /// movies of one plane.
 void take_steps(const VolumeSteps& steps, const ReadOptions& options, const std::string& subject,
                 VolumeFile& file);
+
+/// Returns (1 - share) · before + share · after, in double; as float, or as double where one of
+/// them is. Both have as many values.
+VolumeData values_between(const VolumeData& before, const VolumeData& after, double share);
+/// Returns the same of volumes. Throws Error where their grids differ.
+Volume volume_between(const Volume& before, const Volume& after, const std::string& name,
+                      double share);
 
 }  // namespace pellucid

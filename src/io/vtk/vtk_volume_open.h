@@ -19,7 +19,7 @@ struct OpenedVtkVolume {
   int components = 1;
   std::string array;
   std::optional<double> time;      ///< that a step in time was asked for; none: the first is read
-  std::vector<double> times;       ///< of the file's steps; empty: it has none
+  std::vector<double> times;       ///< times of the file's steps; empty: it has none
   std::vector<std::string> notes;  ///< one line each
   std::string type;                ///< of its values
   bool reads_parts = false;        ///< whether its values are still to be read, by read_part_here()
