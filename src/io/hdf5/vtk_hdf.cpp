@@ -2,12 +2,14 @@
 #include "vtk_hdf.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
+#include "axes/time_steps.h"
 #include "files/input_file.h"
 #include "files/memory_limit.h"
 #include "pellucid/io/internal/module.h"
@@ -54,6 +56,10 @@ bool write(const VtkHdfContents& contents, std::span<std::byte> to) {
     arrays.push_back({static_cast<int>(array.place), of_text(array.name), array.type, array.sides,
                       of_text(array.fault)});
   }
+  json lists = json::array();
+  for (const VtkHdfStepList& list : contents.step_lists) {
+    lists.push_back({of_text(list.name), list.numbers});
+  }
   const json j{of_text(contents.type),
                contents.version,
                contents.steps,
@@ -64,7 +70,8 @@ bool write(const VtkHdfContents& contents, std::span<std::byte> to) {
                of_text(contents.point_scalars),
                of_text(contents.cell_scalars),
                arrays,
-               of_text(contents.error)};
+               of_text(contents.error),
+               lists};
   return write_answer(j, to);
 }
 
@@ -95,6 +102,9 @@ VtkHdfContents read_contents(std::span<const std::byte> from) {
     contents.arrays.push_back(std::move(array));
   }
   contents.error = text_of(j.at(10));
+  for (const json& l : j.at(11)) {
+    contents.step_lists.push_back({text_of(l.at(0)), l.at(1).get<std::vector<double>>()});
+  }
   return contents;
 }
 
@@ -143,9 +153,30 @@ std::size_t count_of(const VtkHdfArray& array, bool component, const std::string
 
 }  // namespace
 
+std::vector<double> VtkHdfContents::times() const {
+  for (const VtkHdfStepList& list : step_lists) {
+    if (list.name == "Values") return list.numbers;
+  }
+  return even_times(static_cast<std::size_t>(steps), 0, 1);
+}
+
+std::int64_t VtkHdfContents::of_step(const std::string& list, std::size_t step,
+                                     std::int64_t otherwise) const {
+  const auto found = std::ranges::find(step_lists, list, &VtkHdfStepList::name);
+  if (found == step_lists.end()) return otherwise;
+  const double number = step < found->numbers.size() ? found->numbers[step] : -1;
+  constexpr double largest = 0x1p53;
+  if (!(number >= 0 && number <= largest) || number != std::floor(number)) {
+    throw Error("its list " + one_line(list) +
+                " of the group Steps has no whole number for the step; the file is damaged");
+  }
+  return static_cast<std::int64_t>(number);
+}
+
 std::optional<VtkHdfContents> vtk_hdf_contents(const std::filesystem::path& path) {
   if (!looks_like_vtk_hdf(path)) return std::nullopt;
-  constexpr std::size_t room = std::size_t{4} << 20;
+  // Room for the times of many steps; what is not written to is no memory.
+  constexpr std::size_t room = std::size_t{64} << 20;
   const auto bytes = contained<ListVtkHdf>(list_vtk_hdf_name, path, room,
                                            [&](ListVtkHdf& list, std::span<std::byte> to) {
                                              VtkHdfContents contents;
@@ -178,11 +209,6 @@ VtkHdfContents vtk_hdf_contents(const std::filesystem::path& path, const char* t
     throw Error(name + ": is VTKHDF of version " + std::to_string(contents->version) +
                 "; read are versions 1 and 2");
   }
-  if (contents->steps > 0) {
-    throw Error(name + ": is VTKHDF with " + std::to_string(contents->steps) + " step" +
-                (contents->steps == 1 ? "" : "s") +
-                " in time, which are not read; write one of them as a file without steps");
-  }
   return *std::move(contents);
 }
 
@@ -196,15 +222,25 @@ std::string vtk_hdf_type(const std::filesystem::path& path) {
 }
 
 std::size_t VtkHdfValues::want(const VtkHdfArray& array, std::optional<std::int64_t> component,
-                               const std::optional<IndexBox>& box) {
+                               const std::optional<IndexBox>& box,
+                               const std::optional<std::array<std::int64_t, 2>>& rows) {
   const std::string name = path_.string();
   if (!array.fault.empty()) {
     throw Error(name + ": the array \"" + one_line(array.name) + "\" is " + one_line(array.fault));
   }
-  const std::size_t all = count_of(array, component.has_value(), name);
+  std::size_t all = count_of(array, component.has_value(), name);
+  if (rows) {
+    const std::int64_t side = array.sides.front();
+    const auto [first, number] = *rows;
+    if (first < 0 || number < 0 || first > side || number > side - first) {
+      throw Error(name + ": the array \"" + one_line(array.name) +
+                  "\" ends before the values of the step; the file is cut off or damaged");
+    }
+    all = side == 0 ? 0 : all / static_cast<std::size_t>(side) * static_cast<std::size_t>(number);
+  }
   const std::size_t count = box ? value_count(*box) : all;
   const std::size_t bytes = count * value_size(array.type, name);
-  entries_.push_back({array, component, box, count, bytes_});
+  entries_.push_back({array, component, box, rows, count, bytes_});
   constexpr std::size_t alignment = 8, most = std::size_t{1} << 61;
   if (bytes > most - bytes_) throw Error(name + ": its arrays are too large");
   bytes_ += (bytes + alignment - 1) / alignment * alignment;
@@ -220,8 +256,8 @@ void VtkHdfValues::read() {
         wanted.reserve(entries_.size());
         for (const Entry& entry : entries_) {
           const std::size_t bytes = entry.count * value_size(entry.array.type, "");
-          wanted.push_back(
-              {entry.array, entry.component, entry.box, to.subspan(entry.offset, bytes)});
+          wanted.push_back({entry.array, entry.component, entry.box, entry.rows,
+                            to.subspan(entry.offset, bytes)});
         }
         std::string error;
         read(path_, wanted, error);

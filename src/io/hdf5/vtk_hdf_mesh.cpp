@@ -33,34 +33,32 @@ struct Faces {
 /// The arrays of the cells, and those of values, by their numbers in VtkHdfValues.
 class Reader {
  public:
-  Reader(const std::filesystem::path& path, const VtkHdfContents& contents)
+  Reader(const std::filesystem::path& path, const VtkHdfContents& contents, std::size_t step)
       : contents_(contents), values_(path) {
-    const std::size_t points_per_piece = want("NumberOfPoints"),
-                      cells_per_piece = want("NumberOfCells"),
-                      corners_per_piece = want("NumberOfConnectivityIds"), points = want("Points"),
-                      corners = want("Connectivity"), offsets = want("Offsets"),
-                      types = want("Types");
+    read_sizes(path, step);
+    const Rows points = rows_from(first_.points, total_.points),
+               cells = rows_from(first_.cells, total_.cells),
+               of_corners = rows_from(first_.corners, total_.corners);
+    // Each piece has one offset more than cells.
+    const auto pieces = static_cast<std::int64_t>(points_per_piece_.size());
+    const std::int64_t first_offset = first_.cells + first_.pieces;
+    const std::size_t places = want("Points", points), corners = want("Connectivity", of_corners),
+                      offsets = want("Offsets", rows_from(first_offset, total_.cells + pieces)),
+                      types = want("Types", cells);
     const std::vector<std::size_t> of_faces = want_faces();
     for (const VtkHdfArray& array : contents.arrays) {
       if (array.place == VtkHdfArray::Place::root || !array.fault.empty()) continue;
       if (array.sides.size() > 2) continue;
-      arrays_.push_back({&array, values_.want(array)});
+      arrays_.push_back({&array, values_.want(array, {}, {}, rows_of(array, step))});
     }
     values_.read();
-    points_per_piece_ = whole_numbers(points_per_piece, "NumberOfPoints");
-    cells_per_piece_ = whole_numbers(cells_per_piece, "NumberOfCells");
-    corners_per_piece_ = whole_numbers(corners_per_piece, "NumberOfConnectivityIds");
     corners_ = whole_numbers(corners, "Connectivity");
     offsets_ = whole_numbers(offsets, "Offsets");
     types_ = whole_numbers(types, "Types");
-    points_ = numbers(points);
+    points_ = numbers(places);
     take_faces(of_faces);
     if (points_.size() % 3 != 0)
       throw Error(std::string("its points have no three numbers") + damaged);
-    if (cells_per_piece_.size() != points_per_piece_.size() ||
-        corners_per_piece_.size() != points_per_piece_.size()) {
-      throw Error(std::string("its pieces are not as many in all lists") + damaged);
-    }
   }
 
   void read(MeshBlocks& mesh) {
@@ -76,14 +74,84 @@ class Reader {
     std::size_t number;
   };
 
-  std::size_t want(const char* name) {
+  using Rows = std::optional<std::array<std::int64_t, 2>>;
+  static Rows rows_from(std::int64_t first, std::int64_t count) { return std::array{first, count}; }
+  /// Numbers of pieces, points, cells and corners.
+  struct Sizes {
+    std::int64_t pieces = 0, points = 0, cells = 0, corners = 0;
+  };
+
+  /// Reads how many points, cells and corners the pieces have, and of a file with steps which are
+  /// those of the step. Without steps all are read.
+  void read_sizes(const std::filesystem::path& path, std::size_t step) {
+    VtkHdfValues sizes(path);
+    std::swap(values_, sizes);
+    const bool has_steps = contents_.steps > 0;
+    Rows rows;
+    if (has_steps) {
+      const std::int64_t all = list_size("NumberOfPoints");
+      first_.pieces = contents_.of_step("PartOffsets", step, 0);
+      first_.points = contents_.of_step("PointOffsets", step, 0);
+      first_.cells = contents_.of_step("CellOffsets", step, 0);
+      first_.corners = contents_.of_step("ConnectivityIdOffsets", step, 0);
+      // Without the list each step has as many parts.
+      rows = rows_from(first_.pieces,
+                       contents_.of_step("NumberOfParts", step,
+                                         std::max<std::int64_t>(1, all / contents_.steps)));
+    }
+    const std::size_t points = want("NumberOfPoints", rows), cells = want("NumberOfCells", rows),
+                      corners = want("NumberOfConnectivityIds", rows);
+    values_.read();
+    points_per_piece_ = whole_numbers(points, "NumberOfPoints");
+    cells_per_piece_ = whole_numbers(cells, "NumberOfCells");
+    corners_per_piece_ = whole_numbers(corners, "NumberOfConnectivityIds");
+    if (cells_per_piece_.size() != points_per_piece_.size() ||
+        corners_per_piece_.size() != points_per_piece_.size()) {
+      throw Error(std::string("its pieces are not as many in all lists") + damaged);
+    }
+    std::swap(values_, sizes);
+    if (!has_steps) return;
+    total_ = {0, sum_of(points_per_piece_), sum_of(cells_per_piece_), sum_of(corners_per_piece_)};
+  }
+
+  /// Returns a sum of sizes. Throws Error where no file has so many.
+  static std::int64_t sum_of(const std::vector<std::int64_t>& sizes) {
+    std::int64_t sum = 0;
+    for (const std::int64_t size : sizes) {
+      constexpr std::int64_t most = std::int64_t{1} << 53;
+      if (size < 0 || size > most - sum)
+        throw Error(std::string("its pieces are too large") + damaged);
+      sum += size;
+    }
+    return sum;
+  }
+
+  const VtkHdfArray& array_of(const char* name) const {
     const auto found = std::ranges::find_if(contents_.arrays, [&](const VtkHdfArray& a) {
       return a.place == VtkHdfArray::Place::root && a.name == name;
     });
     if (found == contents_.arrays.end()) {
       throw Error("has no array " + std::string(name) + " in its group VTKHDF; it is damaged");
     }
-    return values_.want(*found);
+    return *found;
+  }
+  std::int64_t list_size(const char* name) const {
+    const std::vector<std::int64_t>& sides = array_of(name).sides;
+    return sides.empty() ? 0 : sides.front();
+  }
+
+  /// Takes all rows where the file has no steps.
+  std::size_t want(const char* name, const Rows& rows = {}) {
+    return values_.want(array_of(name), {}, {}, contents_.steps > 0 ? rows : Rows{});
+  }
+  /// Returns the rows of an array of points or cells at the step.
+  Rows rows_of(const VtkHdfArray& array, std::size_t step) const {
+    if (contents_.steps == 0) return {};
+    const bool of_points = array.place == VtkHdfArray::Place::point;
+    const std::string list = (of_points ? "PointDataOffsets/" : "CellDataOffsets/") + array.name;
+    const std::int64_t first =
+        contents_.of_step(list, step, of_points ? first_.points : first_.cells);
+    return rows_from(first, of_points ? total_.points : total_.cells);
   }
 
   /// The lists of the faces of polyhedra, of which a file has all or none.
@@ -103,6 +171,9 @@ class Reader {
     const bool has_any = std::ranges::any_of(contents_.arrays, [](const VtkHdfArray& a) {
       return a.place == VtkHdfArray::Place::root && a.name == "PolyhedronToFaces";
     });
+    if (has_any && contents_.steps > 0) {
+      throw Error("has polyhedra in steps of time, which are not read; write the step as a file");
+    }
     std::vector<std::size_t> wanted;
     for (const char* name : face_lists) {
       if (has_any) wanted.push_back(want(name));
@@ -339,7 +410,8 @@ class Reader {
           array.sides.size() == 2 ? static_cast<std::size_t>(array.sides[1]) : 1;
       constexpr std::size_t max_components = 1 << 20;
       if (components < 1 || components > max_components) continue;
-      const auto rows = static_cast<std::size_t>(array.sides[0]);
+      const auto rows = static_cast<std::size_t>(
+          contents_.steps > 0 ? (point ? total_.points : total_.cells) : array.sides[0]);
       const std::size_t needed = point ? points_.size() / 3 : types_.size();
       if (rows != needed) {
         throw Error("the array \"" + array.name + "\" has " + std::to_string(rows) +
@@ -373,6 +445,7 @@ class Reader {
   std::vector<std::int64_t> points_per_piece_, cells_per_piece_, corners_per_piece_, corners_,
       offsets_, types_;
   std::vector<double> points_;
+  Sizes first_, total_;         ///< sizes of the step; 0 without steps
   std::optional<Faces> faces_;  ///< none: the file has no polyhedra
   std::size_t point_at_ = 0, cell_at_ = 0, corner_at_ = 0, offset_at_ = 0;
 };
@@ -381,11 +454,20 @@ class Reader {
 MeshBlocks read_vtk_hdf(const std::filesystem::path& path, const MeshReadOptions& options) {
   const std::string name = path.string();
   const VtkHdfContents contents = vtk_hdf_contents(path, "UnstructuredGrid");
-  if (options.time) throw Error(name + ": the file has no steps in time; leave the time out");
+  const std::vector<double> times = contents.times();
+  if (options.time && times.empty()) {
+    throw Error(name + ": the file has no steps in time; leave the time out");
+  }
   MeshBlocks mesh;
   mesh.file.format = "VTKHDF";
+  const std::size_t step = times.empty() ? 0 : nearest_step(times, options.time);
+  if (!times.empty()) {
+    mesh.file.time = times[step];
+    mesh.file.times = times;
+    std::ranges::sort(mesh.file.times);
+  }
   try {
-    Reader(path, contents).read(mesh);
+    Reader(path, contents, step).read(mesh);
   } catch (const Error& error) {
     const std::string message = error.what();
     throw Error(message.starts_with(name) ? message : name + ": " + message);
@@ -401,6 +483,10 @@ extern const MeshFormat vtk_hdf_mesh_format{
     .takes_content = [](const std::filesystem::path& path,
                         std::string_view) { return vtk_hdf_type(path) == "UnstructuredGrid"; },
     .content_decides = true,
-    .read = read_vtk_hdf};
+    .read = read_vtk_hdf,
+    .times =
+        [](const std::filesystem::path& path) {
+          return vtk_hdf_contents(path, "UnstructuredGrid").times();
+        }};
 
 }  // namespace pellucid

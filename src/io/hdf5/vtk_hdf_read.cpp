@@ -75,7 +75,7 @@ VtkHdfArray describe(hid_t group, const std::string& name, VtkHdfArray::Place pl
   const Id space(H5Dget_space(dataset.get()), H5Sclose, "the axes of a dataset");
   const Id type(H5Dget_type(dataset.get()), H5Tclose, "the type of a dataset");
   const int rank = H5Sget_simple_extent_ndims(space.get());
-  constexpr int max_axes = 4;
+  constexpr int max_axes = 5;
   std::optional<std::string> kept = type_of(type.get());
   if (kept && is_stored_only(*kept)) kept = "f64";
   if (!kept || rank < 1 || rank > max_axes) {
@@ -128,6 +128,40 @@ void list_arrays(hid_t file, VtkHdfArray::Place place, VtkHdfContents& contents)
   }
 }
 
+/// Adds the lists of numbers in a group of Steps that have one number, or one first, for each step.
+void list_steps(hid_t group, const std::string& before, VtkHdfContents& contents) {
+  std::vector<std::string> names;
+  if (H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, take_name, &names) < 0) {
+    throw Error("HDF5 cannot read its list of steps; the file is damaged");
+  }
+  for (const std::string& name : names) {
+    H5O_info_t about;
+    if (H5Oget_info_by_name(group, name.c_str(), &about, H5P_DEFAULT) < 0) continue;
+    if (about.type == H5O_TYPE_GROUP && before.empty()) {
+      const Id inner(H5Gopen2(group, name.c_str(), H5P_DEFAULT), H5Gclose, name.c_str());
+      list_steps(inner.get(), name + "/", contents);
+    }
+    if (about.type != H5O_TYPE_DATASET) continue;
+    const VtkHdfArray array = describe(group, name, VtkHdfArray::Place::root);
+    constexpr std::int64_t most = 1 << 20;
+    if (!array.fault.empty() || array.sides.size() > 2 || array.sides[0] != contents.steps)
+      continue;
+    const std::int64_t columns = array.sides.size() == 2 ? array.sides[1] : 1;
+    if (columns < 1 || columns > 16 || contents.steps > most) continue;
+    std::vector<double> numbers(static_cast<std::size_t>(contents.steps * columns));
+    const Id dataset(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose, name.c_str());
+    if (H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()) <
+        0) {
+      throw unreadable_values(dataset.get(), name);
+    }
+    VtkHdfStepList list{before + name, {}};
+    for (std::size_t i = 0; i < numbers.size(); i += static_cast<std::size_t>(columns)) {
+      list.numbers.push_back(numbers[i]);
+    }
+    contents.step_lists.push_back(std::move(list));
+  }
+}
+
 void list(const std::filesystem::path& path, VtkHdfContents& contents) {
   const Id file(open_file(path), H5Fclose, "the file");
   if (H5Lexists(file.get(), root, H5P_DEFAULT) <= 0) return;
@@ -146,8 +180,10 @@ void list(const std::filesystem::path& path, VtkHdfContents& contents) {
   if (H5Lexists(file.get(), steps.c_str(), H5P_DEFAULT) > 0) {
     const Id of_steps(H5Oopen(file.get(), steps.c_str(), H5P_DEFAULT), H5Oclose, "the steps");
     const std::vector<double> count = number_attribute(of_steps.get(), "NSteps");
-    contents.steps =
-        count.empty() ? 1 : std::max<std::int64_t>(1, static_cast<std::int64_t>(count[0]));
+    contents.steps = count.empty() || !(count[0] <= 0x1p53)
+                         ? 1
+                         : std::max<std::int64_t>(1, static_cast<std::int64_t>(count[0]));
+    list_steps(of_steps.get(), "", contents);
   }
   for (const auto place :
        {VtkHdfArray::Place::root, VtkHdfArray::Place::point, VtkHdfArray::Place::cell}) {
@@ -170,10 +206,15 @@ void read_one(hid_t file, const VtkHdfWanted& wanted) {
     start.back() = static_cast<hsize_t>(*wanted.component);
     count.back() = 1;
   }
+  if (wanted.rows) {
+    start.front() = static_cast<hsize_t>(wanted.rows->front());
+    count.front() = static_cast<hsize_t>(wanted.rows->back());
+  }
   if (wanted.box) {
+    const std::size_t slowest = wanted.rows ? 3 : 2;
     for (std::size_t a = 0; a < 3; ++a) {
-      start.at(2 - a) = static_cast<hsize_t>(wanted.box->first[a]);
-      count.at(2 - a) = static_cast<hsize_t>(wanted.box->count[a]);
+      start.at(slowest - a) = static_cast<hsize_t>(wanted.box->first[a]);
+      count.at(slowest - a) = static_cast<hsize_t>(wanted.box->count[a]);
     }
   }
   hsize_t values = 1;
@@ -194,12 +235,12 @@ void read_one(hid_t file, const VtkHdfWanted& wanted) {
 
 }  // namespace pellucid
 
-extern "C" __attribute__((visibility("default"))) void pellucid_list_vtk_hdf_1(
+extern "C" __attribute__((visibility("default"))) void pellucid_list_vtk_hdf_2(
     const std::filesystem::path& path, pellucid::VtkHdfContents& contents) {
   pellucid::answer(contents.error, "split the file", [&] { pellucid::list(path, contents); });
 }
 
-extern "C" __attribute__((visibility("default"))) void pellucid_read_vtk_hdf_2(
+extern "C" __attribute__((visibility("default"))) void pellucid_read_vtk_hdf_3(
     const std::filesystem::path& path, std::span<const pellucid::VtkHdfWanted> wanted,
     std::string& error) {
   pellucid::answer(error, "split the file", [&] {

@@ -5,7 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "axes/time_steps.h"
 #include "hdf5_format.h"
+#include "meshes/mesh_blocks.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/scene/error.h"
 #include "volumes/array_statistics.h"
@@ -21,7 +23,11 @@ struct Named {
   std::string name;
   VtkHdfArray array;
   int components = 1;
+  bool in_time = false;   ///< says that its first axis is that of steps
+  std::int64_t step = 0;  ///< the place on that axis
 
+  /// Axis z; y and x follow.
+  std::size_t slowest() const { return in_time ? 1 : 0; }
   Centering centering() const {
     return array.place == VtkHdfArray::Place::cell ? Centering::cell : Centering::point;
   }
@@ -62,25 +68,29 @@ void set_points(Image& image, const std::string& name) {
 
 void add_array(Image& image, const VtkHdfArray& array) {
   if (array.place == VtkHdfArray::Place::root || array.name == ghosts) return;
-  Named named{array.name, array, 1};
+  Named named;
+  named.name = array.name;
+  named.array = array;
   const auto has_name = [&](const Named& other) { return other.name == named.name; };
   if (std::ranges::any_of(image.arrays, has_name)) named.name += "_cell";
   std::string fault = array.fault;
   const std::vector<std::int64_t>& sides = array.sides;
-  if (fault.empty() && sides.size() != 3 && sides.size() != 4) {
+  named.in_time = image.contents.steps > 0 && sides.size() > 3;
+  const std::size_t z = named.slowest();
+  if (fault.empty() && sides.size() != z + 3 && sides.size() != z + 4) {
     fault = "an array of " + std::to_string(sides.size()) + " axes";
   }
   for (std::size_t a = 0; a < 3 && fault.empty(); ++a) {
-    if (sides[a] == side(image, array, 2 - a)) continue;
-    fault = "an array of " + std::to_string(sides[2]) + " x " + std::to_string(sides[1]) + " x " +
-            std::to_string(sides[0]) + " values, which is not what its WholeExtent says";
+    if (sides[z + a] == side(image, array, 2 - a)) continue;
+    fault = "an array of " + std::to_string(sides[z + 2]) + " x " + std::to_string(sides[z + 1]) +
+            " x " + std::to_string(sides[z]) + " values, which is not what its WholeExtent says";
   }
-  if (fault.empty() && sides.size() == 4) {
+  if (fault.empty() && sides.size() == z + 4) {
     constexpr std::int64_t most = 1 << 20;
-    if (sides[3] < 1 || sides[3] > most) {
-      fault = "an array of " + std::to_string(sides[3]) + " components";
+    if (sides.back() < 1 || sides.back() > most) {
+      fault = "an array of " + std::to_string(sides.back()) + " components";
     } else {
-      named.components = static_cast<int>(sides[3]);
+      named.components = static_cast<int>(sides.back());
     }
   }
   named.array.fault = fault;
@@ -169,18 +179,31 @@ std::vector<VolumeData> read_values(const std::filesystem::path& path, const Nam
   VtkHdfValues values(path);
   const std::optional<IndexBox> box =
       range.part != nullptr ? std::optional(range.part->box) : std::nullopt;
+  const auto rows =
+      named.in_time ? std::optional(std::array{named.step, std::int64_t{1}}) : std::nullopt;
+  const bool has_components = named.array.sides.size() == named.slowest() + 4;
   for (int c = range.first; c < range.first + range.number; ++c) {
-    if (named.array.sides.size() == 4) {
-      values.want(named.array, c, box);
-    } else {
-      values.want(named.array, {}, box);
-    }
+    values.want(named.array, has_components ? std::optional<std::int64_t>(c) : std::nullopt, box,
+                rows);
   }
   values.read();
   std::vector<VolumeData> components;
   components.reserve(static_cast<std::size_t>(range.number));
   for (int c = 0; c < range.number; ++c) components.push_back(values[static_cast<std::size_t>(c)]);
   return components;
+}
+
+/// Takes the array at a step in time, by where the file says that it is.
+void take_step(const VtkHdfContents& contents, std::size_t step, const std::string& name,
+               Named& named) {
+  const bool of_points = named.centering() == Centering::point;
+  const std::string list =
+      (of_points ? "PointDataOffsets/" : "CellDataOffsets/") + named.array.name;
+  try {
+    named.step = contents.of_step(list, step, static_cast<std::int64_t>(step));
+  } catch (const Error& error) {
+    throw Error(name + ": " + error.what());
+  }
 }
 
 VolumeFile open_vtk_hdf(const std::filesystem::path& path, const ReadOptions& options) {
@@ -192,8 +215,20 @@ VolumeFile open_vtk_hdf(const std::filesystem::path& path, const ReadOptions& op
       options.note) {
     options.note("the file marks ghost or hidden places (vtkGhostType), which are shown as any");
   }
-  const Named& named = choose(image, options, name);
+  Named named = choose(image, options, name);
+  const std::vector<double> times = image.contents.times();
+  if (options.time && times.empty()) {
+    throw Error(name + ": the file has no steps in time; leave the time out");
+  }
+  const std::size_t step = times.empty() ? 0 : nearest_step(times, options.time);
+  if (!times.empty()) take_step(image.contents, step, name, named);
+  if (options.note && options.time) {
+    options.note(name + ": " + step_note(times, step, *options.time));
+  } else if (options.note && times.size() > 1) {
+    options.note(name + ": the first is read of " + times_note(times));
+  }
   VolumeFile file;
+  file.times = times;
   file.description = describe(image, named, name);
   apply_overrides(options, file.description);
   file.components = named.components;
@@ -208,14 +243,15 @@ std::vector<VolumeArray> list_vtk_hdf_arrays(const std::filesystem::path& path) 
   const Image image = image_of(path);
   std::vector<VolumeArray> list;
   for (std::size_t i = 0; i < image.arrays.size(); ++i) {
-    const Named& named = image.arrays[i];
+    Named named = image.arrays[i];
+    if (image.contents.steps > 0) take_step(image.contents, 0, path.string(), named);
     VolumeArray about;
     about.name = named.name;
     about.centering = named.centering();
     about.type = named.array.type;
     about.is_default = i == image.shown;
     for (std::size_t a = 0; a < 3; ++a) {
-      about.dimensions.push_back(static_cast<int>(named.array.sides[2 - a]));
+      about.dimensions.push_back(static_cast<int>(named.array.sides[named.slowest() + 2 - a]));
     }
     constexpr int most = 64;
     about.more_components = std::max(named.components - most, 0);
@@ -251,6 +287,7 @@ extern const VolumeFormat vtk_hdf_format{
     .refuses = is_mesh_file,
     .open = open_vtk_hdf,
     .list = [](const std::filesystem::path& path,
-               const ReadOptions&) { return list_vtk_hdf_arrays(path); }};
+               const ReadOptions&) { return list_vtk_hdf_arrays(path); },
+    .has_times = true};
 
 }  // namespace pellucid

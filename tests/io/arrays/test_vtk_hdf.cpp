@@ -11,6 +11,7 @@
 #include "pellucid/io/mesh_source.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/io/read_volume.h"
+#include "pellucid/io/time_steps.h"
 #include "tests/io/scratch_folder.h"
 #include "vtk_hdf_files.h"
 
@@ -43,7 +44,7 @@ struct ImageFile {
   std::vector<std::int64_t> version{1, 0}, extent{2, 4, 0, 3, 0, 4};
   std::vector<double> direction{0, -1, 0, 1, 0, 0, 0, 0, 1};
   Text text = Text::fixed;
-  bool latest = false, steps = false;
+  bool latest = false;
   std::string type = "ImageData";
 
   void write(const fs::path& path) const {
@@ -60,7 +61,6 @@ struct ImageFile {
     file.array("PointData", "odd", {5, 4, 4}, counting(80));
     file.array("CellData", "p", {4, 3, 2}, counting(24));
     file.mark("PointData", "Scalars", "p");
-    if (steps) file.group("Steps");
   }
 };
 
@@ -142,8 +142,6 @@ TEST_F(VtkHdf, SaysWhatItDoesNotRead) {
     of.write(path("a.vtkhdf"));
     EXPECT_EQ(numbers(read_volume(path("a.vtkhdf")).data())[1], 1);
   }
-  of.steps = true;
-  EXPECT_TRUE(contains(error(of), "step"));
   of = {};
   of.extent = {0, 0, 0, 3, 0, 4};
   EXPECT_TRUE(contains(error(of), "flat along x"));
@@ -170,7 +168,7 @@ struct MeshFileOf {
                              1, 1, 1, 0, 1, 1, 1, 0, 0, 1, 1, 0, 1, 1, 1, 2, 0, 0};
   std::vector<std::int64_t> points_per_piece{8, 4};
   std::vector<std::uint8_t> cell_flags{0, 0, 0, 1}, point_flags;
-  bool without_types = false, steps = false;
+  bool without_types = false;
 
   void write(const fs::path& path) const {
     VtkHdfWriter file(path, "UnstructuredGrid", Text::variable);
@@ -189,7 +187,6 @@ struct MeshFileOf {
     file.array("CellData", "vtkGhostType", {4}, cell_flags);
     if (!point_flags.empty()) file.array("PointData", "vtkGhostType", {12}, point_flags);
     file.array("FieldData", "time", {1}, std::vector<double>{3});
-    if (steps) file.group("Steps");
   }
 };
 
@@ -254,7 +251,6 @@ TEST_F(VtkHdf, RefusesMeshesThatContradictThemselves) {
   EXPECT_TRUE(contains(error([](auto& of) { of.cells = {2, 2, 0}; }), "pieces"));
   EXPECT_TRUE(contains(error([](auto& of) { of.cells = {2, 1LL << 60}; }), "whole number"));
   EXPECT_TRUE(contains(error([](auto& of) { of.cells = {2, 1LL << 50}; }), "Types"));
-  EXPECT_TRUE(contains(error([](auto& of) { of.steps = true; }), "step"));
   EXPECT_TRUE(contains(error([](auto& of) { of.points.resize(33); }), "there are 11 points"));
 }
 
@@ -287,6 +283,132 @@ TEST_F(VtkHdf, SurvivesFilesThatAreCutOffOrSpoiled) {
       }
     }
   }
+}
+
+/// A file of three steps, 3, 1 and 2, with a group Steps.
+void write_steps(VtkHdfWriter& file, const std::string& list = "",
+                 const std::vector<std::int64_t>& offsets = {}) {
+  file.attribute<std::int64_t>("NSteps", {3}, "Steps");
+  file.array<double>("Steps", "Values", {3}, {3, 1, 2});
+  if (!list.empty())
+    file.array("Steps/" + list.substr(0, list.find('/')), list.substr(list.find('/') + 1), {3},
+               offsets);
+}
+
+TEST_F(VtkHdf, StepsOfImagesAreFoundByTheirTimes) {
+  for (const bool has_offsets : {false, true}) {
+    {
+      VtkHdfWriter file(path("t.vtkhdf"), "ImageData");
+      file.attribute<std::int64_t>("Version", {2, 0});
+      file.attribute<std::int64_t>("WholeExtent", {0, 3, 0, 2, 0, 1});
+      std::vector<float> p(72);
+      for (std::size_t i = 0; i < 72; ++i) p[i] = static_cast<float>(i);
+      file.array("PointData", "p", {3, 2, 3, 4}, p);
+      file.array("PointData", "v", {3, 2, 3, 4, 2}, counting(144));
+      file.mark("PointData", "Scalars", "p");
+      if (has_offsets) {
+        write_steps(file, "PointDataOffsets/p", {2, 0, 1});
+      } else {
+        write_steps(file);
+      }
+    }
+    EXPECT_FALSE(is_mesh_file(path("t.vtkhdf")));
+    FieldSource source;
+    source.file = path("t.vtkhdf");
+    EXPECT_EQ(source_times(source), (std::vector<double>{1, 2, 3}));
+    // The places of the times 1, 2 and 3.
+    const std::vector<double> places =
+        has_offsets ? std::vector<double>{0, 1, 2} : std::vector<double>{1, 2, 0};
+    for (std::size_t i = 0; i < 3; ++i) {
+      ReadOptions options;
+      options.time = static_cast<double>(i + 1);
+      EXPECT_EQ(numbers(read_volume(path("t.vtkhdf"), options).data())[5], 24 * places[i] + 5);
+      options.array = "v";
+      EXPECT_EQ(read_components(path("t.vtkhdf"), options).size(), 2U);
+      EXPECT_EQ(numbers(read_components(path("t.vtkhdf"), options)[1].data())[5],
+                48 * (has_offsets ? std::vector<double>{1, 2, 0} : places)[i] + 11);
+    }
+    ReadOptions between;
+    between.time = 1.25;
+    between.time_between = TimeBetween::linear;
+    EXPECT_EQ(numbers(read_volume(path("t.vtkhdf"), between).data())[5],
+              0.75 * (24 * places[0] + 5) + 0.25 * (24 * places[1] + 5));
+    EXPECT_EQ(list_arrays(path("t.vtkhdf")).size(), 2U);
+  }
+  VtkHdfWriter file(path("cut.vtkhdf"), "ImageData");
+  file.attribute<std::int64_t>("WholeExtent", {0, 3, 0, 2, 0, 1});
+  file.array("PointData", "p", {2, 2, 3, 4}, counting(48));
+  write_steps(file);
+  file.close();
+  ReadOptions last;
+  last.time = 2;
+  EXPECT_TRUE(contains(error_of([&] { read_volume(path("cut.vtkhdf"), last); }), "ends before"));
+}
+
+/// Two tetrahedra in two parts at 3 and 2, one at 1; the points at 2 are those of 3.
+void write_mesh_steps(const fs::path& path) {
+  VtkHdfWriter file(path, "UnstructuredGrid");
+  file.attribute<std::int64_t>("Version", {2, 0});
+  write_steps(file);
+  file.array<std::int64_t>("Steps", "PartOffsets", {3}, {0, 2, 0});
+  file.array<std::int64_t>("Steps", "NumberOfParts", {3}, {2, 1, 2});
+  file.array<std::int64_t>("Steps", "PointOffsets", {3}, {0, 8, 0});
+  file.array<std::int64_t>("Steps", "CellOffsets", {3, 1}, {0, 2, 0});
+  file.array<std::int64_t>("Steps", "ConnectivityIdOffsets", {3, 1}, {0, 8, 0});
+  file.array<std::int64_t>("Steps/PointDataOffsets", "p", {3}, {0, 8, 12});
+  file.array<std::int64_t>("Steps/CellDataOffsets", "c", {3}, {0, 2, 3});
+  file.array<std::int64_t>("", "NumberOfPoints", {3}, {4, 4, 4});
+  file.array<std::int64_t>("", "NumberOfCells", {3}, {1, 1, 1});
+  file.array<std::int64_t>("", "NumberOfConnectivityIds", {3}, {4, 4, 4});
+  std::vector<double> points;
+  for (const double x : {0.0, 5.0, 9.0}) {
+    for (const std::array<double, 3>& p :
+         {std::array{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}) {
+      points.insert(points.end(), {x + p[0], p[1], p[2]});
+    }
+  }
+  file.array("", "Points", {12, 3}, points);
+  file.array<std::int64_t>("", "Connectivity", {12}, {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3});
+  file.array<std::int64_t>("", "Offsets", {6}, {0, 4, 0, 4, 0, 4});
+  file.array<std::uint8_t>("", "Types", {3}, {10, 10, 10});
+  file.array("PointData", "p", {20}, counting(20));
+  file.array<std::int32_t>("CellData", "c", {5}, {30, 31, 10, 20, 21});
+}
+
+TEST_F(VtkHdf, StepsOfMeshesAreFoundByTheirTimes) {
+  write_mesh_steps(path("m.vtkhdf"));
+  MeshSource source;
+  source.file = path("m.vtkhdf");
+  EXPECT_EQ(source_times(source), (std::vector<double>{1, 2, 3}));
+  const auto at = [&](std::optional<double> time) {
+    MeshReadOptions options;
+    options.time = time;
+    return read_mesh(path("m.vtkhdf"), options);
+  };
+  const MeshFile one = at(1), two = at(2), three = at(3);
+  EXPECT_EQ(at(std::nullopt).time, 3);  // the first of the file
+  EXPECT_EQ(one.times, (std::vector<double>{1, 2, 3}));
+  ASSERT_EQ(one.grid.points.size(), 4U);
+  EXPECT_EQ(one.grid.points[1].x, 10);
+  EXPECT_EQ(numbers(one.grid.arrays[0].values), (std::vector<double>{8, 9, 10, 11}));
+  EXPECT_EQ(numbers(one.grid.arrays[1].values), std::vector<double>{10});
+  ASSERT_EQ(two.grid.points.size(), 8U);
+  EXPECT_EQ(two.grid.points[5].x, 6);
+  EXPECT_EQ(numbers(two.grid.arrays[0].values)[7], 19);
+  EXPECT_EQ(numbers(two.grid.arrays[1].values), (std::vector<double>{20, 21}));
+  EXPECT_EQ(numbers(three.grid.arrays[0].values)[7], 7);
+  EXPECT_EQ(numbers(three.grid.arrays[1].values), (std::vector<double>{30, 31}));
+  // Linear between 2 and 3, which have one mesh; not between 1 and 2.
+  MeshReadOptions between;
+  between.time_between = TimeBetween::linear;
+  between.time = 2.25;
+  const MeshFile mixed = read_mesh(path("m.vtkhdf"), between);
+  EXPECT_EQ(mixed.time, 2.25);
+  EXPECT_EQ(numbers(mixed.grid.arrays[0].values)[7], 0.75 * 19 + 0.25 * 7);
+  EXPECT_EQ(numbers(mixed.grid.arrays[1].values), (std::vector<double>{22.5, 23.5}));
+  between.time = 1.5;
+  EXPECT_TRUE(contains(error_of([&] { read_mesh(path("m.vtkhdf"), between); }),
+                       "different points or cells"));
 }
 
 }  // namespace

@@ -38,14 +38,17 @@ class VtkHdfWriter {
   }
 
   template <class Value>
-  void attribute(const std::string& name, const std::vector<Value>& values) {
+  void attribute(const std::string& name, const std::vector<Value>& values,
+                 const std::string& group = "") {
+    const hid_t at = open(group);
     const hsize_t count = values.size();
     const hid_t space = H5Screate_simple(1, &count, nullptr);
     const hid_t attribute =
-        H5Acreate2(root_, name.c_str(), type<Value>(), space, H5P_DEFAULT, H5P_DEFAULT);
+        H5Acreate2(at, name.c_str(), type<Value>(), space, H5P_DEFAULT, H5P_DEFAULT);
     H5Awrite(attribute, type<Value>(), values.data());
     H5Aclose(attribute);
     H5Sclose(space);
+    H5Gclose(at);
   }
   /// Marks an array of a group: "PointData", "Scalars", its name.
   void mark(const std::string& group, const std::string& what, const std::string& name) {
