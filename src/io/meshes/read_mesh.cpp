@@ -13,6 +13,7 @@
 #include "files/memory_limit.h"
 #include "mesh_format.h"
 #include "pellucid/scene/error.h"
+#include "steps/file_steps.h"
 #include "text/text.h"
 #include "volumes/volume_steps.h"
 #include "vtk/vtk_collection.h"
@@ -59,6 +60,20 @@ const MeshFormat& format_of(const std::filesystem::path& path, const MeshReadOpt
 }
 
 MeshBlocks read_step(const std::filesystem::path& path, const MeshReadOptions& options) {
+  if (lists_file_steps(path)) {
+    const std::vector<FileStep> steps = file_steps(path);
+    const FileStep& step = nearest_file(steps, options.time, path);
+    MeshReadOptions inside = options;
+    inside.time.reset();
+    MeshBlocks mesh = read_step(step.file, inside);
+    if (mesh.file.times.size() > 1) {
+      throw Error(path.string() + ": " + step.file.filename().string() +
+                  " has steps in time of its own, of which a list chooses none; give it alone");
+    }
+    mesh.file.times = times_of(steps);
+    mesh.file.time = step.time;
+    return mesh;
+  }
   const std::uintmax_t bytes = check_input_file(path);
   // VTK's copy beside ours; what is compressed takes more.
   check_memory(2 * bytes, path.string() + ": its mesh");
@@ -138,6 +153,13 @@ MeshBlocks read_blocks(const std::filesystem::path& path, const MeshReadOptions&
 }  // namespace
 
 bool is_mesh_file(const std::filesystem::path& path) {
+  if (lists_file_steps(path)) {
+    try {
+      return is_mesh_file(file_steps(path).front().file);
+    } catch (const Error&) {
+      return false;  // whoever reads it as a volume says what is wrong
+    }
+  }
   const std::optional<VtkFileKind> kind = vtk_file_kind(path);
   if ((kind && kind->is_volume()) || is_image_collection(path)) return false;
   const MeshFormat* const by_extension = format_by_extension(path);
@@ -174,6 +196,7 @@ MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& opt
 }
 
 std::vector<double> mesh_times(const std::filesystem::path& path, const MeshReadOptions& options) {
+  if (lists_file_steps(path)) return times_of(file_steps(path));
   check_input_file(path);
   const auto times = format_of(path, options).times;
   return times == nullptr ? std::vector<double>{} : times(path);

@@ -11,6 +11,7 @@
 
 #include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
+#include "steps/file_steps.h"
 #include "text/text.h"
 #include "text/xml_scanner.h"
 #include "volumes/volume_format.h"
@@ -105,6 +106,25 @@ fs::path only_image(const fs::path& path) {
 
 }  // namespace
 
+namespace {
+
+/// Returns the images of a list by time, one at each; empty: it is no such list.
+std::vector<FileStep> image_steps(const fs::path& path) {
+  if (collection_kind(path) != "Collection") return {};
+  std::vector<FileStep> steps;
+  try {
+    for (const ListedStep& step : steps_of_list(path)) {
+      steps.push_back({step.time, path.parent_path() / step.file});
+    }
+  } catch (const Error& error) {
+    throw Error(path.string() + ": " + error.what());
+  }
+  const bool is_one_each = std::ranges::adjacent_find(steps, {}, &FileStep::time) == steps.end();
+  return is_one_each && steps.size() > 1 ? steps : std::vector<FileStep>();
+}
+
+}  // namespace
+
 bool is_image_collection(const fs::path& path) {
   const std::optional<std::string> kind = collection_kind(path);
   if (!kind) return false;
@@ -148,9 +168,18 @@ extern const VolumeFormat image_collection_format{
         [](const fs::path& path, const VolumeFormat*) {
           return is_image_collection(path) ? ContentOwner::this_format : ContentOwner::others;
         },
-    .open = [](const fs::path& path,
-               const ReadOptions& options) { return open_vtk_volume(only_image(path), options); },
-    .list = [](const fs::path& path,
-               const ReadOptions&) { return list_vtk_arrays(only_image(path)); }};
+    .open =
+        [](const fs::path& path, const ReadOptions& options) {
+          const std::vector<FileStep> steps = image_steps(path);
+          return steps.empty() ? open_vtk_volume(only_image(path), options)
+                               : open_file_step(steps, path, options);
+        },
+    .list =
+        [](const fs::path& path, const ReadOptions& options) {
+          const std::vector<FileStep> steps = image_steps(path);
+          return steps.empty() ? list_vtk_arrays(only_image(path))
+                               : list_file_step(steps, path, options);
+        },
+    .has_times = true};
 
 }  // namespace pellucid

@@ -14,7 +14,7 @@ bool is_image_collection(const std::filesystem::path& path);
 /// A file of a list, and its time.
 struct ListedStep {
   double time = 0;
-  std::string file;  ///< as the list names it
+  std::string file;  ///< name in the list
 };
 
 /// Returns the files of a list by time (.pvd), ascending by time. A file without a time has 0.
