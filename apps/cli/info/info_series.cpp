@@ -2,6 +2,7 @@
 #include "info_series.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <vector>
@@ -9,11 +10,26 @@
 #include "arguments/output.h"
 #include "pellucid/base/version.h"
 #include "pellucid/io/dicom_series.h"
+#include "pellucid/io/time_steps.h"
+#include "pellucid/scene/error.h"
 
 namespace pellucid::cli {
 
+namespace {
+
+/// Returns the times of volumes that are steps; empty: the series are something else.
+std::vector<double> times_of(const FieldSource& source) {
+  try {
+    return source_times(source);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+}  // namespace
+
 bool print_series(const FieldSource& source, const std::string& input, bool as_json) {
-  if (source.options.series || !std::filesystem::is_directory(source.file) ||
+  if (source.options.series || source.options.time || !std::filesystem::is_directory(source.file) ||
       !is_dicom(source.file)) {
     return false;
   }
@@ -22,12 +38,15 @@ bool print_series(const FieldSource& source, const std::string& input, bool as_j
       list_dicom_series(source.file, [&](const std::string& note) { notes.push_back(note); });
   if (all.size() < 2) return false;
   for (const std::string& note : notes) print_note(note);
+  const std::vector<double> times = times_of(source);
   Json json;
   json["pellucid"] = PELLUCID_VERSION_STRING;
   json["input"] = input;
+  json["times"] = times;
   json["series"] = Json::array();
-  std::string text = fmt::format("{:<12} {}\n{:<12} {}; choose one by --series\n", "name", input,
-                                 "DICOM series", all.size());
+  std::string text = fmt::format("{:<12} {}\n{:<12} {}; choose one by --series{}\n", "name", input,
+                                 "DICOM series", all.size(), times.empty() ? "" : " or by --time");
+  if (!times.empty()) text += fmt::format("{:<12} {}\n", "times", fmt::join(times, ", "));
   for (std::size_t i = 0; i < all.size(); ++i) {
     const DicomSeries& s = all[i];
     json["series"].push_back(

@@ -6,9 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "axes/time_steps.h"
 #include "dicom_folder.h"
 #include "dicom_grid.h"
+#include "dicom_times.h"
 #include "dicom_values.h"
+#include "meshes/mesh_blocks.h"
 #include "pellucid/scene/error.h"
 #include "volumes/components.h"
 #include "volumes/volume_format.h"
@@ -58,13 +61,41 @@ std::string unit_of(const std::vector<DicomSlice>& slices) {
   return same ? unit : std::string();
 }
 
+/// Returns the volume of a series whose time is nearest to the one that the options ask for, and
+/// tells which.
+DicomGroup volume_at_time(const DicomFolder& folder, const std::filesystem::path& path,
+                          const ReadOptions& options) {
+  const DicomSteps steps = dicom_steps(folder, path, options.series);
+  if (steps.volumes.empty()) {
+    throw Error(
+        path.string() +
+        ": has no volumes that differ in time alone (TriggerTime, TemporalPositionIdentifier "
+        "and the like); leave the time out");
+  }
+  const std::size_t step = nearest_step(steps.times, options.time);
+  if (options.note) {
+    options.note(path.string() + ": " + step_note(steps.times, step, *options.time, steps.unit));
+  }
+  return *steps.volumes[step];
+}
+
+/// Returns the times of the volumes of a series; none where it has one. Throws Error where several
+/// are no steps.
+std::vector<double> dicom_times(const std::filesystem::path& path, const ReadOptions& options) {
+  const DicomFolder folder = scan_dicom_folder(path);
+  DicomSteps steps = dicom_steps(folder, path, options.series);
+  if (steps.volumes.empty()) choose_dicom_series(folder, path, options.series);
+  return std::move(steps.times);
+}
+
 /// Opens a series without the files for which reading it threw DamagedDicom.
 VolumeFile open_dicom_without(const std::vector<DamagedDicomFile>& damaged,
                               const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
   const DicomFolder folder = scan_dicom_folder(path, damaged);
-  DicomGroup group = choose_dicom_series(folder, path, options.series);
+  DicomGroup group = options.time ? volume_at_time(folder, path, options)
+                                  : choose_dicom_series(folder, path, options.series);
   const DicomImage& image = *group.slices.front().image;
   const std::string left_out = left_out_text(folder.damaged);
   const auto fail = [&](const std::string& what) {
@@ -123,6 +154,8 @@ extern const VolumeFormat dicom_format{.name = "DICOM",
                                        .takes_unknown_name = is_dicom,
                                        .open = open_dicom,
                                        .open_without = open_dicom_without,
+                                       .times = dicom_times,
+                                       .has_times = true,
                                        .has_series = true,
                                        .is_of_patients = true};
 

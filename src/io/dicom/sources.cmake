@@ -10,6 +10,7 @@ pellucid_io_sources(
     dicom_grid.cpp
     dicom_marks.cpp
     dicom_slices.cpp
+    dicom_times.cpp
     dicom_values.cpp
     dicom_volumes.cpp
   LOOPS

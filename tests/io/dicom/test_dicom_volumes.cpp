@@ -14,6 +14,7 @@
 #include "dicom_files.h"
 #include "pellucid/io/dicom_series.h"
 #include "pellucid/io/read_volume.h"
+#include "pellucid/io/time_steps.h"
 #include "tests/io/volume_files.h"
 
 namespace pellucid::test_dicom_volumes {
@@ -69,6 +70,12 @@ class DicomVolumesTest : public test::ScratchFolder {
     if (values.size() < 2) return;
     const std::string text = error_of([&] { read_volume(folder_); });
     EXPECT_TRUE(contains(text, "DICOM series") && contains(text, name)) << text;
+  }
+  /// Expects the value of the slice `k` at a time, by the path of any file.
+  void expect_of_file(double time, int k) {
+    ReadOptions options;
+    options.time = time;
+    EXPECT_EQ(value_at(read_volume(folder_ / "s105", options), 0, 0, k), k);
   }
   std::string notes_;
 };
@@ -282,6 +289,62 @@ TEST_F(DicomVolumesTest, WithoutAnOrientationNothingIsCalledLps) {
   EXPECT_TRUE(is_placed_in_lps(path("s101")));
   write_slices(3, [](auto& f, int i) { f.at(at(3 * i)).without(0x00200037); });
   EXPECT_EQ(world_space(folder_), "");
+}
+
+// Three phases of four slices, whose times are 300, 100 and 200 ms in the order of their numbers.
+TEST_F(DicomVolumesTest, PhasesAreFoundByTheirTimes) {
+  const std::array<int, 3> times{300, 100, 200};
+  struct Tag {
+    std::uint32_t tag;
+    const char* unit;
+  };
+  for (const auto& [tag, unit] :
+       {Tag{0x00181060, "ms (TriggerTime)"}, Tag{0x00200100, "TemporalPositionIdentifier"},
+        Tag{0x00541300, "ms (FrameReferenceTime)"}}) {
+    write_slices(12, [&](auto& f, int i) {
+      f.at(at(30 + 3 * (i % 4)));
+      f.set(tag, std::to_string(times[static_cast<std::size_t>(i / 4)]));
+    });
+    FieldSource source;
+    source.file = folder_;
+    EXPECT_EQ(source_times(source), (std::vector<double>{100, 200, 300}));
+    for (std::size_t step = 0; step < 3; ++step) {
+      ReadOptions options;
+      options.time = times[step] + 10;
+      notes_.clear();
+      options.note = [this](const std::string& text) { notes_ += text + "\n"; };
+      const Volume volume = read_volume(folder_, options);
+      EXPECT_EQ(value_at(volume, 0, 0, 1), 4 * static_cast<double>(step) + 1);
+      EXPECT_TRUE(contains(notes_, unit)) << notes_;
+    }
+    ReadOptions between;
+    between.time = 125;
+    between.time_between = TimeBetween::linear;
+    EXPECT_EQ(value_at(read_volume(folder_, between), 0, 0, 1), 0.75 * 5 + 0.25 * 9);
+    // By any of its files, and of one series as ever by its number.
+    expect_of_file(300, 1);
+    EXPECT_EQ(value_at(read_noting("1"), 0, 0, 0), 4);
+  }
+  // Times of the day, of which each slice has its own.
+  write_slices(12, [&](auto& f, int i) {
+    f.at(at(30 + 3 * (i % 4)));
+    f.set(0x00200012, std::to_string(i / 4));
+    f.set(0x00080032, "10150" + std::to_string(2 * (2 - i / 4)) + "." + std::to_string(i % 4 + 1));
+  });
+  FieldSource source;
+  source.file = folder_;
+  const double noon = 10 * 3600 + 15 * 60;
+  EXPECT_EQ(source_times(source), (std::vector<double>{noon + 0.1, noon + 2.1, noon + 4.1}));
+  // Echoes are no times.
+  write_slices(8, [&](auto& f, int i) {
+    f.at(at(30 + 3 * (i % 4)));
+    f.set(0x00180086, std::to_string(i / 4 + 1));
+    f.set(0x00181060, std::to_string(100 * (i / 4)));
+  });
+  EXPECT_TRUE(contains(error_of([&] { source_times(source); }), "DICOM series"));
+  ReadOptions options;
+  options.time = 100;
+  EXPECT_TRUE(contains(error_of([&] { read_volume(folder_, options); }), "differ in time alone"));
 }
 
 }  // namespace
