@@ -179,5 +179,159 @@ class Times(ProgramTest):
         self.fail_with("--array-axes", "info", name, "--array-axes", "tczy", code=2)
 
 
+    def vti(self, name, value, time=None, how="ascii"):
+        """An image of one value, all over, as ParaView writes it."""
+        field = ""
+        if time is not None and how == "ascii":
+            field = (f'<FieldData><DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" '
+                     f'format="ascii">{time}</DataArray></FieldData>')
+        elif time is not None:
+            field = (f'<FieldData><DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" '
+                     f'format="binary" RangeMin="{time}" RangeMax="{time}">'
+                     f'CAAAAAAAAAA=</DataArray></FieldData>')
+        numbers = " ".join(str(value) for _ in range(POINTS))
+        os.makedirs(os.path.dirname(self.path(name)) or ".", exist_ok=True)
+        return self.write(
+            name, f'<VTKFile type="ImageData" version="0.1" byte_order="LittleEndian"><ImageData '
+                  f'WholeExtent="0 3 0 2 0 1" Origin="0 0 0" Spacing="1 1 1">{field}'
+                  f'<Piece Extent="0 3 0 2 0 1"><PointData Scalars="v"><DataArray type="Float32" '
+                  f'Name="v" format="ascii">{numbers}</DataArray></PointData></Piece></ImageData>'
+                  f'</VTKFile>')
+
+    def legacy(self, name, value, time, binary):
+        kind = "BINARY" if binary else "ASCII"
+        stated = struct.pack(">d", time) if binary else str(time).encode()
+        values = (struct.pack(">24f", *[value] * POINTS) if binary
+                  else " ".join(str(value) for _ in range(POINTS)).encode())
+        head = (f"# vtk DataFile Version 3.0\na\n{kind}\nDATASET STRUCTURED_POINTS\n"
+                "FIELD FieldData 1\nTimeValue 1 1 double\n").encode()
+        self.write(name, head + stated + b"\nDIMENSIONS 4 3 2\nSPACING 1 1 1\nORIGIN 0 0 0\n"
+                   b"POINT_DATA 24\nSCALARS v float\nLOOKUP_TABLE default\n" + values + b"\n")
+
+    def needs_vtk(self):
+        if os.environ.get("PELLUCID_HAS_VTK") == "0":
+            self.skipTest("this build does not read VTK files")
+
+    def test_lists_of_images(self):
+        self.needs_vtk()
+        for time in TIMES:
+            self.vti(f"d/s{time:g}.vti", 10 * time)
+        inside = "".join(f'<DataSet timestep="{time}" group="" part="0" file="d/s{time:g}.vti"/>'
+                         for time in TIMES)
+        name = self.write("a.pvd", '<VTKFile type="Collection" version="0.1"><Collection>'
+                          + inside + "</Collection></VTKFile>")
+        self.expect_steps(name)
+        # Without a time the first is read, and a note says so.
+        self.assertEqual(self.report("info", name)["range"], [10, 10])
+        self.assertIn("the first is read of 3 times (1, 2, 3)", self.notes("info", name))
+        self.assertEqual(self.report("info", name, "--array", "v")["array"], "v")
+        series = {"file-series-version": "1.0",
+                  "files": [{"name": f"d/s{time:g}.vti", "time": time} for time in TIMES]}
+        self.expect_steps(self.write("a.vti.series", json.dumps(series)))
+        series["files"][0]["time"] = 1
+        name = self.write("b.vti.series", json.dumps(series))
+        self.fail_with("s3.vti and s1.vti have the same time", "info", name)
+        self.fail_with("/files: ", "info", self.write("c.vti.series", "{}"))
+        self.fail_with("lists no file", "info", self.write("d.vti.series", '{"files": []}'))
+        self.fail_with("s7.vti", "info", self.write(
+            "e.vti.series", '{"files": [{"name": "d/s7.vti", "time": 7}]}'))
+
+    def test_patterns_of_files(self):
+        self.needs_vtk()
+        for time in TIMES:
+            self.vti(f"run_{int(time):03}.vti", 10 * time)
+        self.vti("run_x.vti", 99)
+        for pattern in ("run_%03d.vti", "run_*.vti"):
+            self.expect_steps(pattern)
+        self.fail_with("no file has a name of this pattern", "info", "walk_*.vti")
+        # Times that the files state themselves.
+        for how in ("ascii", "binary"):
+            for number, time in enumerate((0.5, 0.25, 0.75)):
+                self.vti(f"{how}_{number}.vti", 10 * time, time, how)
+            self.expect_steps(f"{how}_*.vti", times=(0.25, 0.5, 0.75))
+        for binary in (False, True):
+            for number, time in enumerate((0.5, 0.25, 0.75)):
+                self.legacy(f"l{binary}{number}.vtk", 10 * time, time, binary)
+            self.expect_steps(f"l{binary}*.vtk", times=(0.25, 0.5, 0.75))
+        for time in (0.5, 0.25):
+            self.write(f"v{time}.npy", npy(values_at(time), SIDES))
+        self.expect_steps("v*.npy", times=(0.25, 0.5))
+
+    def range_of_mesh(self, report):
+        return report["arrays"][0]["components"][0]["range"]
+
+    def test_patterns_of_meshes(self):
+        self.needs_vtk()
+        grid = ('<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian">'
+                '<UnstructuredGrid><Piece NumberOfPoints="4" NumberOfCells="1"><Points><DataArray '
+                'type="Float32" NumberOfComponents="3" format="ascii">0 0 0 {x} 0 0 0 1 0 0 0 1'
+                '</DataArray></Points><Cells><DataArray type="Int32" Name="connectivity" '
+                'format="ascii">0 1 2 3</DataArray><DataArray type="Int32" Name="offsets" '
+                'format="ascii">4</DataArray><DataArray type="UInt8" Name="types" format="ascii">'
+                '10</DataArray></Cells><PointData><DataArray type="Float32" Name="v" '
+                'format="ascii">{v} {v} {v} {v}</DataArray></PointData></Piece>'
+                '</UnstructuredGrid></VTKFile>')
+        for time in TIMES:
+            self.write(f"m{time:g}.vtu", grid.format(x=1, v=10 * time))
+        series = {"files": [{"name": f"m{time:g}.vtu", "time": time} for time in TIMES]}
+        self.write("m.vtu.series", json.dumps(series))
+        for name in ("m*.vtu", "m%d.vtu", "m.vtu.series"):
+            report = self.report("info", name)
+            self.assertEqual((report["times"], report["time"]), ([1, 2, 3], 1))
+            for time in TIMES:
+                report = self.report("info", name, "--time", str(time))
+                self.assertEqual(self.range_of_mesh(report), [10 * time] * 2)
+        report = self.report("info", "m*.vtu", "--time", "1.5", "--time-between", "linear")
+        self.assertEqual((report["time"], self.range_of_mesh(report)), (1.5, [15, 15]))
+        self.write("m3.vtu", grid.format(x=2, v=30))
+        self.fail_with("different points or cells", "info", "m*.vtu", "--time", "2.5",
+                       "--time-between", "linear")
+
+    def test_linear_between_steps(self):
+        name = self.write("a.nii", nifti((4, *SIDES, 3, 1, 1, 1), 1, 2 | 8, 1,
+                                         all_steps([1, 2, 3])))
+        linear = ("--time-between", "linear")
+        for time, value in ((1.25, 12.5), (2, 20), (2.75, 27.5), (0, 10), (9, 30)):
+            report = self.report("info", name, "--time", str(time), *linear)
+            self.assertEqual(report["range"], [value, value], time)
+        self.assertIn("time 1.25 lies between the steps 1 and 2; values are linear between them",
+                      self.notes("info", name, "--time", "1.25", *linear))
+        self.assertEqual(self.report("info", name, "--time", "1.25", "--time-between",
+                                     "nearest")["range"], [10, 10])
+        # A field again, which is written, rendered and named in scenes.
+        self.succeed("convert", name, "--time", "1.25", *linear, "-q", "-o", "one.raw")
+        self.assertEqual(self.read("one.raw"), floats([12.5] * POINTS))
+        self.succeed("render", name, "--time", "1.25", *linear, "--save-scene", "s.json", "--size",
+                     "8x8", "-q", "-o", "a.exr")
+        scene = json.loads(self.read("s.json"))
+        self.assertEqual((scene["layers"][0]["field"]["time"],
+                          scene["layers"][0]["field"]["time_between"]), (1.25, "linear"))
+        self.succeed("render", "s.json", "-q", "-o", "b.exr")
+        self.assertEqual(self.read("a.exr")[-300:], self.read("b.exr")[-300:])
+        del scene["layers"][0]["field"]["time"]
+        self.write("t.json", json.dumps(scene))
+        self.fail_with('time_between.*makes no sense without "time"', "render", "t.json", "-o",
+                       "c.png")
+        self.fail_with("--time-between needs a --time", "info", name, *linear, code=2)
+        self.fail_with("--time-between", "info", name, "--time", "1", "--time-between", "cubic",
+                       code=2)
+
+    def test_linear_between_grids(self):
+        self.needs_vtk()
+        for time in (1, 2):
+            self.vti(f"r{time}.vti", time)
+        text = self.read("r2.vti").replace(b'Spacing="1 1 1"', b'Spacing="1 1 2"')
+        self.write("r2.vti", text)
+        self.fail_with("different grids", "info", "r*.vti", "--time", "1.5", "--time-between",
+                       "linear")
+        # NaN in either is NaN.
+        nan = float("nan")
+        values = [nan] + [1] * (POINTS - 1) + [5] * (POINTS - 1) + [nan]
+        name = self.write("n.npy", npy(values, (*SIDES, 2)))
+        report = self.report("info", name, "--array-axes", "tzyx", "--time", "0.5",
+                             "--time-between", "linear")
+        self.assertEqual((report["nan"], report["range"], report["type"]), (2, [3, 3], "f32"))
+
+
 if __name__ == "__main__":
     unittest.main()
