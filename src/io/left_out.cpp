@@ -6,6 +6,7 @@
 #include "axes/grid_axes.h"
 #include "axes/positions_beside.h"
 #include "pellucid/io/color_bar.h"
+#include "pellucid/io/figure.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/import_transfer_function.h"
 #include "pellucid/io/mesh_source.h"
@@ -87,6 +88,28 @@ Image with_color_bars(const Image&, const std::vector<ColorBar>&) {
 
 void check_draws_color_bars() {
   throw left_out("--color-bar: what draws color bars");
+}
+
+// Figures.
+
+FigureSpace figure_space(const SceneDescription&, const Scene&) {
+  return {};
+}
+
+std::string accuracy_caption(const FigureAccuracy&) {
+  return {};
+}
+
+FigureFormat figure_format(const std::filesystem::path&) {
+  return FigureFormat::pdf;
+}
+
+void check_figure(const Figure&, ImageSize, FigureFormat) {
+  throw left_out("--figure: what draws figures");
+}
+
+void write_figure(const Image&, const Figure&, const std::filesystem::path&) {
+  throw left_out("--figure: what draws figures");
 }
 
 }  // namespace pellucid

@@ -57,7 +57,7 @@ OTHER_PROJECTS = [
     (re.compile(r"^hdf5\.h$"), "hdf5"),
     (re.compile(r"^netcdf\.h$"), "netcdf"),
     (re.compile(r"^openvdb/"), "openvdb"),
-    (re.compile(r"^cairo\.h$"), "cairo"),
+    (re.compile(r"^cairo(-pdf|-svg)?\.h$"), "cairo"),
     (re.compile(r"^mpi\.h$"), "MPI"),
     (re.compile(r"^bzlib\.h$"), "BZip2::BZip2"),
     (re.compile(r"^blosc\.h$"), "blosc"),

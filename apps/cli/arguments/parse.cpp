@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pellucid/scene/srgb.h"
@@ -98,6 +99,24 @@ ImageSize parse_size(const std::string& option, const std::string& text) {
     throw UsageError(fmt::format("{} '{}': expected {}", option, text, expected));
   }
   return {width, height};
+}
+
+double parse_paper_length(const std::string& option, const std::string& text) {
+  constexpr std::pair<std::string_view, double> units[] = {{"mm", 1}, {"cm", 10}, {"in", 25.4}};
+  std::string_view number = text;
+  double mm = 1;
+  for (const auto& [unit, size] : units) {
+    if (!number.ends_with(unit)) continue;
+    number.remove_suffix(unit.size());
+    mm = size;
+    break;
+  }
+  const std::optional<double> length = parse_number<double>(number);
+  if (!length || !std::isfinite(*length) || !(*length > 0)) {
+    throw UsageError(
+        fmt::format("{} '{}': expected mm, or a length as in 8.5cm or 3.35in", option, text));
+  }
+  return *length * mm;
 }
 
 std::vector<int> parse_bins(const std::string& option, const std::string& text, std::size_t axes) {

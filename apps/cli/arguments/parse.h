@@ -51,6 +51,8 @@ struct PictureTolerance {
 };
 /// Returns a tolerance as above; or percent, "1%" up to "100%", which is a share.
 PictureTolerance parse_picture_tolerance(const std::string& option, const std::string& text);
+/// Returns a length on paper in mm: "85", "85mm", "8.5cm" or "3.35in".
+double parse_paper_length(const std::string& option, const std::string& text);
 /// "plane:X,Y,Z,NX,NY,NZ", "box:X0,Y0,Z0,X1,Y1,Z1", "sphere:X,Y,Z,R" or
 /// "cylinder:X0,Y0,Z0,X1,Y1,Z1,R"; "-" in front cuts the shape away.
 Clip parse_clip(const std::string& option, const std::string& text);

@@ -137,6 +137,7 @@ int run_render(const RenderArguments& arguments) {
   if (arguments.renders() || !arguments.save_scene.empty()) {
     place_camera(arguments, prepared);
   }
+  check_figures(arguments, prepared);
   const auto& function = prepared.description.layers.front().transfer_function;
   const bool wants_function = arguments.print_tf || !arguments.save_tf.empty();
   if (!function && wants_function) {
@@ -221,6 +222,9 @@ void write_picture(const RenderArguments& arguments, const PreparedScene& prepar
       }
     });
   }
+  for (const std::string& path : arguments.figure.files) {
+    write(path, [&] { write_figure(arguments, prepared, picture, path); });
+  }
   write(arguments.depth_picture, [&] { write_png(depth_picture(image), arguments.depth_picture); });
   write(arguments.error_map,
         [&] { write_error_map(image, prepared.scene.integration.tolerance, arguments.error_map); });
@@ -276,6 +280,7 @@ Command add_render(CommandLine& app) {
       "  pellucid render brain.nii.gz --tf tf.json --view left -o brain.exr -o brain.png\n"
       "  pellucid render head.nrrd --preset ct-bone -o bone.png\n"
       "  pellucid render flow.vti --colormap coolwarm --range 2%:98% --color-bar -o flow.png\n"
+      "  pellucid render flow.vti --figure flow.pdf --figure-width 180 --background white\n"
       "  pellucid render head.nrrd --tf CT-AAA.vp.json -o slicer.png\n"
       "  pellucid render scene.json -o scene.exr --size 1920x1080 --samples 2 --json\n"
       "  pellucid render cta.nrrd --projection maximum -o mip.png --values mip.npy\n"

@@ -20,6 +20,14 @@
 
 namespace pellucid::cli {
 
+/// Figures that are written, as given.
+struct FigureArguments {
+  std::vector<std::string> files;
+  std::string width, without, with, unit;
+
+  void add_to(CommandLine& command);
+};
+
 struct RenderArguments {
   std::string input;
   std::vector<std::string> outputs;
@@ -37,6 +45,7 @@ struct RenderArguments {
   int threads = 0;
   std::string balance;  ///< balance of the bricks of ranks
   bool ranks = false;
+  FigureArguments figure;
   std::string color_bar_title;
   bool color_bar = false;
   bool print_tf = false, reference = false, strict = false, json = false, quiet = false,
@@ -60,7 +69,8 @@ struct RenderArguments {
   }
   bool wants_color_bar() const { return color_bar || !color_bar_title.empty(); }
   bool renders() const {
-    return !outputs.empty() || !depth_picture.empty() || !error_map.empty() || !values.empty();
+    return !outputs.empty() || !figure.files.empty() || !depth_picture.empty() ||
+           !error_map.empty() || !values.empty();
   }
 };
 
@@ -177,6 +187,14 @@ void check_color_bar(const RenderArguments& arguments);
 std::optional<Image> with_wanted_color_bars(const RenderArguments& arguments,
                                             const PreparedScene& prepared, const Image& image,
                                             std::vector<std::string>& notes);
+/// Throws UsageError for wrong options of figures, and Error if Cairo, which draws them, is
+/// missing.
+void check_figures(const RenderArguments& arguments);
+/// Throws Error if the figures of a scene could not be drawn.
+void check_figures(const RenderArguments& arguments, const PreparedScene& prepared);
+/// Writes a figure. Throws Error.
+void write_figure(const RenderArguments& arguments, const PreparedScene& prepared,
+                  const RenderedPicture& picture, const std::string& file);
 /// Writes the pictures and other files, the report and the notes. Throws Error, and OverTolerance
 /// if the picture is over the tolerance.
 void write_picture(const RenderArguments& arguments, const PreparedScene& prepared,

@@ -12,6 +12,8 @@ namespace pellucid::cli {
 
 void check_color_bar(const RenderArguments& arguments) {
   if (!arguments.wants_color_bar()) return;
+  // The title is that of a figure's bar, too.
+  if (!arguments.color_bar && !arguments.figure.files.empty()) return;
   if (std::ranges::none_of(arguments.outputs,
                            [](const std::string& path) { return extension_of(path) == ".png"; })) {
     throw UsageError("--color-bar: is drawn in a .png, never among numbers; give -o FILE.png");

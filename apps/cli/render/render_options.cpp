@@ -31,6 +31,7 @@ void add_output_options(CommandLine& command, RenderArguments& arguments) {
       .add_option("--values", arguments.values,
                   "Also write the value of the projected layer for each pixel, as numbers")
       ->option_text("FILE.npy|FILE.exr");
+  arguments.figure.add_to(command);
   command
       .add_option("--save-tf", arguments.save_tf, "Write the transfer function used, for editing")
       ->option_text("FILE.json");

@@ -40,6 +40,7 @@ void refuse_arguments(const RenderArguments& arguments) {
       {"--print-tf", arguments.print_tf},
       {"--range in percent", arguments.colors.asks_data()},
       {"--save-tf", !arguments.save_tf.empty()},
+      {"--figure", !arguments.figure.files.empty()},
       {"--device", !arguments.device.empty() && arguments.device != "cpu"},
       {"--method", !arguments.method.empty() && arguments.method != "exact"}};
   for (const auto& [argument, is_given] : given) {

@@ -53,6 +53,7 @@ void refuse_error_arguments(const RenderArguments& arguments, const std::string&
 std::vector<NamedFile> output_files(const RenderArguments& arguments) {
   std::vector<NamedFile> files;
   for (const std::string& path : arguments.outputs) files.push_back({"-o", path});
+  for (const std::string& path : arguments.figure.files) files.push_back({"--figure", path});
   const NamedFile others[] = {{"--depth", arguments.depth_picture},
                               {"--error-map", arguments.error_map},
                               {"--values", arguments.values},
@@ -111,6 +112,7 @@ void check_arguments(const RenderArguments& arguments) {
                            "of the two ('pellucid compare' measures how much pictures differ)");
   }
   check_color_bar(arguments);
+  check_figures(arguments);
   if (arguments.strict && !arguments.renders()) {
     throw UsageError("--strict judges a rendering; give -o FILE.png or FILE.exr");
   }

@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
-#include <string_view>
+#include <string>
 
 #include "cairo_module.h"
+#include "cairo_text.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/internal/axis_ticks.h"
 #include "process/module_answer.h"
-#include "text/text.h"
 
 namespace pellucid {
 namespace {
@@ -28,18 +27,6 @@ constexpr Signal panel_color{0.06, 0.065, 0.075, 0.85}, text_color{1, 1, 1, 1},
 struct Box {
   double x = 0, y = 0, width = 0, height = 0;
 };
-
-/// Returns the text as UTF-8 that Cairo takes: other bytes become '?'.
-std::string utf8(const std::string& text) {
-  std::string made;
-  for (std::string_view rest = text; !rest.empty();) {
-    const auto first = static_cast<unsigned char>(rest.front());
-    const std::size_t length = first < 0x20 || first == 0x7f ? 0 : utf8_length(rest);
-    made += length > 0 ? rest.substr(0, length) : "?";
-    rest.remove_prefix(std::max<std::size_t>(length, 1));
-  }
-  return made;
-}
 
 class Sheet {
  public:
@@ -100,17 +87,8 @@ class Sheet {
 
   /// Returns the text, cut to the share of the picture that it may take.
   std::string fitted(const std::string& given) const {
-    const std::string text = utf8(given);
-    const double most = widest * width_;
-    if (width_of(text) <= most) return text;
-    std::string cut = text;
-    while (!cut.empty() && width_of(cut + "\u2026") > most) {
-      while (!cut.empty() && (static_cast<unsigned char>(cut.back()) & 0xC0) == 0x80) {
-        cut.pop_back();
-      }
-      if (!cut.empty()) cut.pop_back();
-    }
-    return cut + "\u2026";
+    return cut_to_width(utf8(given), widest * width_,
+                        [this](const std::string& text) { return width_of(text); });
   }
 
   void set_color(const Signal& color) const {
@@ -237,18 +215,10 @@ class Sheet {
     cairo_set_antialias(context(), CAIRO_ANTIALIAS_DEFAULT);
   }
 
-  template <auto destroy>
-  struct Destroy {
-    template <class T>
-    void operator()(T* object) const {
-      destroy(object);
-    }
-  };
-
   int width_, height_;
   double font_;
-  std::unique_ptr<cairo_surface_t, Destroy<cairo_surface_destroy>> surface_;
-  std::unique_ptr<cairo_t, Destroy<cairo_destroy>> context_;
+  CairoSurface surface_;
+  CairoContext context_;
 };
 
 }  // namespace

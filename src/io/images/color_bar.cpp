@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "cairo_module.h"
+#include "legend_panel.h"
 #include "pellucid/io/internal/module.h"
 #include "pellucid/scene/color_map.h"
 #include "pellucid/scene/error.h"
@@ -95,6 +96,24 @@ Signal signal_of(const Rgb<double>& light) {
   return {channel(light.r), channel(light.g), channel(light.b), 1};
 }
 
+DrawLegends* draw_legends() {
+  return reinterpret_cast<DrawLegends*>(module_function(cairo, draw_legends_name));
+}
+
+/// Puts a pixel of Cairo over one of linear light.
+void put_over(std::uint32_t argb, std::array<float, 4>& pixel) {
+  const double alpha = (argb >> 24U) / 255.0;
+  if (alpha == 0) return;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double signal = ((argb >> (16U - 8U * c)) & 0xFFU) / 255.0 / alpha;
+    const double light = alpha * srgb_to_linear(std::min(signal, 1.0));
+    pixel[c] = static_cast<float>(light + (1 - alpha) * static_cast<double>(pixel[c]));
+  }
+  pixel[3] = static_cast<float>(alpha + (1 - alpha) * static_cast<double>(pixel[3]));
+}
+
+}  // namespace
+
 LegendPanel panel_of(const ColorBar& bar) {
   LegendPanel panel;
   panel.title = bar.title;
@@ -115,24 +134,6 @@ LegendPanel panel_of(const ColorBar& bar) {
   }
   return panel;
 }
-
-DrawLegends* draw_legends() {
-  return reinterpret_cast<DrawLegends*>(module_function(cairo, draw_legends_name));
-}
-
-/// Puts a pixel of Cairo over one of linear light.
-void put_over(std::uint32_t argb, std::array<float, 4>& pixel) {
-  const double alpha = (argb >> 24U) / 255.0;
-  if (alpha == 0) return;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double signal = ((argb >> (16U - 8U * c)) & 0xFFU) / 255.0 / alpha;
-    const double light = alpha * srgb_to_linear(std::min(signal, 1.0));
-    pixel[c] = static_cast<float>(light + (1 - alpha) * static_cast<double>(pixel[c]));
-  }
-  pixel[3] = static_cast<float>(alpha + (1 - alpha) * static_cast<double>(pixel[3]));
-}
-
-}  // namespace
 
 std::string variable_title(const LayerDescription& description, const Layer& layer, int channel) {
   if (const auto* const mesh = std::get_if<MeshContent>(&layer.content)) {
