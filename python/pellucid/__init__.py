@@ -16,8 +16,8 @@ Errors are pellucid.Error, a ValueError whose one line says what is wrong, where
 What a reader assumed or left out is a warning of the category pellucid.Note.
 """
 from ._notes import ImportedTransferFunction, Note, Preset
-from ._pellucid import (Cancelled, Channels, Error, Frame, Gaussians, GradientOpacity, Image,
-                        LabelMask, LabelTable, LabelVolume, Mesh, OpacityTable, Renderer,
+from ._pellucid import (Cancelled, Channels, Error, Figure, Frame, Gaussians, GradientOpacity,
+                        Image, LabelMask, LabelTable, LabelVolume, Mesh, OpacityTable, Renderer,
                         TransferFunction, Volume, __version__, builtin_field, color_map,
                         color_map_names, default_camera,
                         default_transfer_function, dicom_series,
@@ -28,7 +28,7 @@ from ._pellucid import (Cancelled, Channels, Error, Frame, Gaussians, GradientOp
                         suggest, suggest_boundaries, times, view_camera)
 from ._colormaps import from_colormap
 from ._films import animate, frames
-from ._image import Comparison
+from ._image import ColorBar, Comparison
 from ._meshes import mesh_of
 from ._ranks import render_on_ranks
 from ._render import look, render, scene_of
@@ -40,11 +40,11 @@ from .segments import integrate
 
 __all__ = [
     "Camera", "Cancelled", "Channels", "Clip", "ClipBox", "ClipCylinder", "ClipPlane", "ClipSphere",
-    "Comparison", "DirectionalLight", "Error", "Frame", "Gaussian", "Gaussians", "GradientOpacity",
-    "HeadLight", "Image", "ImportedTransferFunction", "Integration", "Isosurface", "LabelMask",
-    "LabelTable", "LabelVolume", "Layer", "Light", "Mesh", "Note", "OpacityTable", "PointLight",
-    "Preset", "Renderer", "Scene", "Shading", "Slice", "TransferFunction", "Viewer", "Volume",
-    "__version__", "animate",
+    "ColorBar", "Comparison", "DirectionalLight", "Error", "Figure", "Frame", "Gaussian",
+    "Gaussians", "GradientOpacity", "HeadLight", "Image", "ImportedTransferFunction",
+    "Integration", "Isosurface", "LabelMask", "LabelTable", "LabelVolume", "Layer", "Light", "Mesh",
+    "Note", "OpacityTable", "PointLight", "Preset", "Renderer", "Scene", "Shading", "Slice",
+    "TransferFunction", "Viewer", "Volume", "__version__", "animate",
     "builtin_field", "color_map", "color_map_names", "default_camera",
     "default_transfer_function", "dicom_series", "export",
     "export_transfer_function", "frames", "from_colormap", "histogram", "import_transfer_function",

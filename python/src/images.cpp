@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "images.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "arrays.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/scene/image_difference.h"
+#include "pellucid/scene/srgb.h"
 
 namespace pellucid::python {
 
@@ -97,6 +100,137 @@ void save(const ImageHandle& handle, const std::filesystem::path& path,
   }
 }
 
+/// Python's Figure: a picture and what is drawn around it.
+struct FigureHandle {
+  std::shared_ptr<const Image> image;
+  Figure figure;
+};
+
+/// Returns the names of parts that are left out: of a text with commas, or of several.
+std::vector<std::string> part_names(const py::object& without) {
+  std::vector<std::string> names;
+  if (!py::isinstance<py::str>(without)) {
+    if (!py::isinstance<py::iterable>(without)) {
+      throw Error("without: expected names of parts, got " + short_repr(without));
+    }
+    for (const py::handle name : without) {
+      if (!py::isinstance<py::str>(name)) {
+        throw Error("without: expected names of parts, got " + short_repr(without));
+      }
+      names.push_back(py::cast<std::string>(name));
+    }
+    return names;
+  }
+  std::string text = py::cast<std::string>(without);
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    names.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return names;
+}
+
+FigureParts parts_of(const py::object& without, const std::optional<bool>& axes) {
+  FigureParts parts;
+  parts.axes = axes;
+  for (const std::string& name : part_names(without)) {
+    if (name == "color-bar") {
+      parts.color_bars = false;
+    } else if (name == "axes") {
+      parts.axes = false;
+    } else if (name == "scale-bar") {
+      parts.scale_bar = false;
+    } else if (name == "letters") {
+      parts.orientation = false;
+    } else if (name == "caption") {
+      parts.caption = false;
+    } else {
+      throw Error("without: there is no part '" + name +
+                  "'; there are color-bar, axes, scale-bar, letters and caption");
+    }
+  }
+  return parts;
+}
+
+void save_figure(const FigureHandle& handle, const std::filesystem::path& path) {
+  const ReleasedLock released;
+  write_figure(*handle.image, handle.figure, path);
+}
+
+std::string figure_bytes(const FigureHandle& handle, const std::string& format) {
+  const FigureFormat known = figure_format("figure." + format);
+  const ReleasedLock released;
+  return encode_figure(*handle.image, handle.figure, known);
+}
+
+FigureHandle figure_of(const ImageHandle& handle, const std::optional<std::filesystem::path>& path,
+                       double width_mm, const py::object& without, const std::optional<bool>& axes,
+                       const std::optional<std::string>& unit, const std::optional<bool>& patient,
+                       const std::optional<std::string>& title,
+                       const std::optional<std::string>& caption, const py::object& background) {
+  FigureHandle made{handle.image, {handle.bars, handle.space}};
+  Figure& figure = made.figure;
+  figure.parts = parts_of(without, axes);
+  figure.width = width_mm;
+  figure.background = background_of(handle, background);
+  if (title && !figure.bars.empty()) figure.bars.front().title = *title;
+  if (figure.space && patient) {
+    figure.space->is_anatomical = *patient;
+    figure.space->unit = *patient ? "mm" : "";
+  }
+  if (figure.space && unit) figure.space->unit = *unit;
+  if (caption) {
+    figure.caption = *caption;
+  } else if (figure.space) {
+    FigureAccuracy accuracy = handle.accuracy;
+    accuracy.largest_error = handle.report.largest_error;
+    accuracy.pixels = handle.report.pixels;
+    accuracy.pixels_proved = handle.report.pixels_proved;
+    accuracy.pixels_over = handle.report.pixels_over_tolerance;
+    figure.caption = accuracy_caption(accuracy);
+  }
+  check_figure(figure, {handle.image->width, handle.image->height},
+               path ? figure_format(*path) : FigureFormat::svg);
+  if (path) save_figure(made, *path);
+  return made;
+}
+
+/// Returns objects of Python's ColorBar.
+py::list color_bars_of(const ImageHandle& handle) {
+  constexpr int count = 1024;
+  const py::object type = py::module_::import("pellucid._image").attr("ColorBar");
+  py::list bars;
+  for (const ColorBar& bar : handle.bars) {
+    const BarSamples samples = sample_bar(bar, count);
+    py::object colors = py::none(), opacity = py::none(), range = py::none();
+    if (bar.function) {
+      py::array_t<double> signals({count, 3});
+      auto at = signals.mutable_unchecked<2>();
+      for (int i = 0; i < count; ++i) {
+        const Rgb<double>& color = samples.colors[static_cast<std::size_t>(i)];
+        at(i, 0) = linear_to_srgb(color.r);
+        at(i, 1) = linear_to_srgb(color.g);
+        at(i, 2) = linear_to_srgb(color.b);
+      }
+      colors = signals;
+      range = py::make_tuple(bar.range[0], bar.range[1]);
+    }
+    if (!samples.opacity.empty()) {
+      opacity = py::array_t<double>(static_cast<py::ssize_t>(samples.opacity.size()),
+                                    samples.opacity.data());
+    }
+    py::list entries;
+    for (const ColorBar::Entry& entry : bar.entries) {
+      const auto signal = [](double x) { return linear_to_srgb(std::clamp(x, 0.0, 1.0)); };
+      entries.append(py::make_tuple(
+          entry.name,
+          py::make_tuple(signal(entry.color.r), signal(entry.color.g), signal(entry.color.b))));
+    }
+    bars.append(type(bar.title, range, colors, opacity, entries));
+  }
+  return bars;
+}
+
 py::object compare(const ImageHandle& a, const py::object& other) {
   const ImageHandle b = image_of(other);
   const ImageDifference d = compare_images(*a.image, *b.image);
@@ -145,6 +279,18 @@ std::string image_repr(const ImageHandle& handle) {
 }
 
 }  // namespace
+
+ImageHandle image_of_scene(const SceneDescription& description, const Scene& scene,
+                           std::optional<Background> background) {
+  ImageHandle handle;
+  handle.background = std::move(background);
+  if (scene.integration.method == Method::exact) handle.tolerance = scene.integration.tolerance;
+  handle.bars = color_bars(description, scene);
+  handle.space = figure_space(description, scene);
+  handle.accuracy.integration = scene.integration;
+  handle.accuracy.transfer_function_error = approximation_error(scene);
+  return handle;
+}
 
 void bind_images(py::module_& module) {
   py::class_<ImageHandle>(module, "Image", R"(
@@ -213,12 +359,52 @@ Writes .png (8 bits sRGB) or .exr (float, with depth, error and values if there 
 draws the colors of the values, or of the labels, over the right edge of a .png; a text is the title
 of the first bar, for example "temperature in K". Raises Error if the file cannot be written, a
 pixel is not finite, or there is no color bar.)")
+      .def("figure", &figure_of, py::arg("path") = py::none(), py::arg("width_mm") = 85,
+           py::kw_only(), py::arg("without") = py::tuple(), py::arg("axes") = py::none(),
+           py::arg("unit") = py::none(), py::arg("patient") = py::none(),
+           py::arg("title") = py::none(), py::arg("caption") = py::none(),
+           py::arg("background") = py::ellipsis(), R"(
+Returns the picture as a Figure of a paper: with color bars, axes, scale bar, letters of a patient
+and a caption that tells its accuracy. A notebook shows it.
+
+    path        also writes it: .pdf, .svg or .png
+    width_mm    of the figure, 30 to 1000; text keeps its size, 6.5 and 7 pt
+    without     parts that are left out: "color-bar", "axes", "scale-bar", "letters", "caption"
+    axes        True or False: whether the box of the data has axes; None: unless of a patient
+    unit        of length, for axes and scale bar; None: "mm" for data of a patient, else none
+    patient     True if the world's x, y and z lead to a patient's left, back and head; None: as
+                the files say that were read
+    title       of the first color bar; None: the layer's name
+    caption     in place of the sentence on the accuracy
+    background  as of save()
+
+An image that was not rendered here has neither bars nor axes. Raises Error if Cairo is missing, the
+picture is too large, a name is unknown, or the file cannot be written.)")
+      .def_property_readonly("color_bars", &color_bars_of,
+                             "List of ColorBar: the legends of the visible layers.")
       .def("compare", &compare, py::arg("other"), R"(
 Returns how far another image of the same size (or an array) is off: largest, rms, psnr,
 share_over_255, at (row, column), not_finite, over_errors and difference (height, width, 4).)")
       .def("_repr_png_",
            [](const ImageHandle& h) { return py::bytes(encode_png(*h.image, h.background)); })
       .def("__repr__", &image_repr);
+  py::class_<FigureHandle>(module, "Figure", R"(
+A picture with text and lines around it, as for a paper (Image.figure()). A notebook shows it.)")
+      .def("save", &save_figure, py::arg("path"), R"(
+Writes .pdf, .svg or .png, complete or not at all. Raises Error if it cannot.)")
+      .def(
+          "encode",
+          [](const FigureHandle& handle, const std::string& format) {
+            return py::bytes(figure_bytes(handle, format));
+          },
+          py::arg("format"), "Returns the bytes of the file: \"pdf\", \"svg\" or \"png\".")
+      .def_property_readonly("width_mm",
+                             [](const FigureHandle& handle) { return handle.figure.width; })
+      .def("_repr_svg_", [](const FigureHandle& handle) { return figure_bytes(handle, "svg"); })
+      .def("__repr__", [](const FigureHandle& handle) {
+        return py::str("<pellucid.Figure of {} x {} pixels, {:g} mm wide>")
+            .format(handle.image->width, handle.image->height, handle.figure.width);
+      });
   module.def(
       "read_image",
       [](const std::filesystem::path& path) {

@@ -30,12 +30,9 @@ namespace {
 /// Python's Frame: a frame that is being rendered.
 class FrameHandle {
  public:
-  FrameHandle(RunningFrame frame, const Scene& scene, std::optional<Background> background,
-              std::vector<ColorBar> bars)
-      : frame_(std::make_unique<RunningFrame>(std::move(frame))),
-        background_(std::move(background)),
-        bars_(std::move(bars)),
-        tolerance_(scene.integration.method == Method::exact ? scene.integration.tolerance : 0) {}
+  /// `image`: of the scene, without pixels.
+  FrameHandle(RunningFrame frame, ImageHandle image)
+      : frame_(std::make_unique<RunningFrame>(std::move(frame))), empty_(std::move(image)) {}
   FrameHandle(FrameHandle&&) = default;
   FrameHandle& operator=(FrameHandle&&) = default;
   ~FrameHandle() noexcept(false) {
@@ -65,7 +62,7 @@ class FrameHandle {
       while (!frame_->finished()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       throw;
     }
-    ImageHandle handle{nullptr, background_, tolerance_, {}, bars_};
+    ImageHandle handle = empty_;
     {
       const ReleasedLock released;
       RenderResult frame = frame_->wait();
@@ -80,14 +77,12 @@ class FrameHandle {
   ImageHandle look() const {
     if (image_) return *image_;
     const ReleasedLock released;
-    return {std::make_shared<const Image>(frame_->look()), background_};
+    return {std::make_shared<const Image>(frame_->look()), empty_.background};
   }
 
  private:
   std::unique_ptr<RunningFrame> frame_;
-  std::optional<Background> background_;
-  std::vector<ColorBar> bars_;
-  double tolerance_;
+  ImageHandle empty_;
   std::optional<ImageHandle> image_{};
   bool waited_for_ = false;
 };
@@ -123,10 +118,9 @@ FrameHandle start(RendererHandle& handle, const py::object& object, bool depth, 
   const PythonScene made = complete_python_scene(object);
   const Scene& scene = made.scene;
   RenderOptions options = options_of(scene, depth, error, values, threads, preview);
-  const std::optional<Background> background = shown_background(object);
-  std::vector<ColorBar> bars = color_bars(made.description, scene);
+  ImageHandle image = image_of_scene(made.description, scene, shown_background(object));
   const ReleasedLock released;
-  return {handle.renderer->start(scene, std::move(options)), scene, background, std::move(bars)};
+  return {handle.renderer->start(scene, std::move(options)), std::move(image)};
 }
 
 ImageHandle render(RendererHandle& handle, const py::object& scene, bool depth, bool error,
@@ -185,8 +179,8 @@ ImageHandle render_share(RendererHandle& handle, const py::object& object, doubl
     if (!estimates) fraction = std::max(fraction.load(), 0.9 * done);
     return !stop.stop_requested();
   };
-  ImageHandle result{nullptr, shown_background(object)};
-  result.bars = color_bars(made.description, made.scene);
+  ImageHandle result;
+  const std::optional<Background> background = shown_background(object);
   std::optional<std::string> over;
   in_a_thread(
       [&] {
@@ -197,9 +191,9 @@ ImageHandle render_share(RendererHandle& handle, const py::object& object, doubl
           fit_opacity_tables(made.description, made.scene);
           return handle.renderer->render(made.scene, options);
         });
+        result = image_of_scene(made.description, made.scene, background);
         result.image = std::make_shared<const Image>(std::move(picture.image));
         result.report = picture.report;
-        result.tolerance = made.scene.integration.tolerance;
         over = picture.over;
       },
       stop, [&] { return fraction.load(); }, progress);
@@ -227,8 +221,9 @@ ImageHandle reference_image(const py::object& object, bool depth, int threads,
     fraction = done;
     return !stop.stop_requested();
   };
-  ImageHandle handle{nullptr, shown_background(object)};
-  handle.bars = color_bars(made.description, scene);
+  ImageHandle handle = image_of_scene(made.description, scene, shown_background(object));
+  handle.tolerance = 0;
+  handle.accuracy.is_reference = true;
   in_a_thread(
       [&] {
         RenderResult frame = render_reference(scene, options);

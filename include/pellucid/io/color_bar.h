@@ -38,6 +38,16 @@ std::vector<ColorBar> color_bars(const SceneDescription& description, const Scen
 inline constexpr const char* no_color_bars =
     "no color bar: it shows labels, and functions of one variable, but there are none";
 
+/// Colors of a bar at the middles of equal parts of its range, from the least value on.
+struct BarSamples {
+  std::vector<Rgb<double>> colors;  ///< linear RGB, clamped to [0, 1]
+  /// Opacities of a length in which the densest value has an optical depth of 3; empty if the
+  /// extinctions mean nothing, or are 0.
+  std::vector<double> opacity;
+};
+/// Returns so many samples of a bar; none of one without a function.
+BarSamples sample_bar(const ColorBar& bar, int count);
+
 /// Returns the picture with legends over its right edge, composited over its pixels; depth, error
 /// and values are left out. Text is drawn by Cairo in a module. Throws Error if that is not there
 /// or cannot draw.

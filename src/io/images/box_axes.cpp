@@ -13,7 +13,7 @@ namespace pellucid {
 namespace {
 
 /// Points between ticks, and the shortest axis that is drawn.
-constexpr double between_ticks = 22, shortest_axis = 24;
+constexpr double between_ticks = 22, shortest_axis = 16;
 
 /// A corner of a box: of each axis the lower end or the upper one.
 using Corner = std::array<bool, 3>;

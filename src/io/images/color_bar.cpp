@@ -114,6 +114,23 @@ void put_over(std::uint32_t argb, std::array<float, 4>& pixel) {
 
 }  // namespace
 
+BarSamples sample_bar(const ColorBar& bar, int count) {
+  BarSamples samples;
+  if (!bar.function) return samples;
+  double densest = 0;
+  for (const auto& point : bar.function->points()) densest = std::max(densest, point.extinction);
+  const auto view = bar.function->view<double>();
+  const auto in_range = [](double x) { return std::clamp(x, 0.0, 1.0); };
+  for (int i = 0; i < count; ++i) {
+    const double share = (i + 0.5) / count;
+    const auto at = view.evaluate((1 - share) * bar.range[0] + share * bar.range[1]);
+    samples.colors.push_back({in_range(at.color.r), in_range(at.color.g), in_range(at.color.b)});
+    if (!bar.shows_opacity || !(densest > 0)) continue;
+    samples.opacity.push_back(1 - std::exp(-depth_shown * at.extinction / densest));
+  }
+  return samples;
+}
+
 LegendPanel panel_of(const ColorBar& bar) {
   LegendPanel panel;
   panel.title = bar.title;
@@ -121,17 +138,9 @@ LegendPanel panel_of(const ColorBar& bar) {
   for (const ColorBar::Entry& entry : bar.entries) {
     panel.entries.push_back({entry.name, signal_of(entry.color)});
   }
-  if (!bar.function) return panel;
-  double densest = 0;
-  for (const auto& point : bar.function->points()) densest = std::max(densest, point.extinction);
-  const auto view = bar.function->view<double>();
-  for (int i = 0; i < samples; ++i) {
-    const double share = (i + 0.5) / samples;
-    const auto at = view.evaluate((1 - share) * bar.range[0] + share * bar.range[1]);
-    panel.colors.push_back(signal_of(at.color));
-    if (!bar.shows_opacity || !(densest > 0)) continue;
-    panel.opacity.push_back(1 - std::exp(-depth_shown * at.extinction / densest));
-  }
+  BarSamples sampled = sample_bar(bar, samples);
+  for (const Rgb<double>& color : sampled.colors) panel.colors.push_back(signal_of(color));
+  panel.opacity = std::move(sampled.opacity);
   return panel;
 }
 
