@@ -212,7 +212,10 @@ def test_letters_of_a_patient(tmp_path):
     oblique = render(CAMERAS["tilted"]).figure(patient=True, without=without)
     assert sorted(words_of(oblique, path)) == ["L", "P", "S"]
     words = words_of(render(CAMERAS["parallel"]).figure(patient=True, axes=True), path)
-    assert "R\u2013L" in words and "(mm)" in words
+    # Ends are named as they are read: from here the patient's right is at the left.
+    assert "R\u2013L" in words and "I\u2013S" in words and "(mm)" in words
+    behind = pellucid.Camera(position=(9, 80, 3), focal_point=(9, 3, 3), up=(0, 0, 1))
+    assert "L\u2013R" in words_of(render(behind).figure(patient=True, axes=True), path)
     assert not {"x", "y", "z"} & set(words)
     assert words_of(image.figure(patient=True, without=[*without, "letters"]), path) == []
 

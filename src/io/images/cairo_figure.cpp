@@ -43,8 +43,6 @@ constexpr int largest_side = 32767;
 constexpr double largest_page = 14400;
 constexpr int bar_rows = 1024;
 constexpr double quarter_turn = std::numbers::pi / 2;
-/// Axes whose outward direction has more of x have upright titles.
-constexpr double steep = 0.85;
 constexpr Signal black{0, 0, 0, 1}, white{1, 1, 1, 1}, grey{0.5, 0.5, 0.5, 1},
     dark_checker{0.32, 0.32, 0.32, 1}, light_checker{0.7, 0.7, 0.7, 1};
 
@@ -583,7 +581,7 @@ class Composer {
       }
       const double x = scale * (axis.from.x + axis.to.x) / 2;
       const double y = scale * (axis.from.y + axis.to.y) / 2;
-      PlacedText title{axis.title, {}, std::abs(axis.outward.x) > steep};
+      PlacedText title{axis.title, {}, axis.is_steep()};
       title.box =
           beside(title.text, x, y, axis.outward, tick + 2 * tick_gap + reach + 1, title.is_upright);
       titles.push_back(std::move(title));

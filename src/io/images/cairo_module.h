@@ -38,6 +38,9 @@ struct PagePoint {
 
 /// Axis of a box, as seen.
 struct PageAxis {
+  /// Steep ones have titles that run upwards.
+  bool is_steep() const { return outward.x > 0.85 || outward.x < -0.85; }
+
   struct Tick {
     PagePoint at;
     std::string label;
