@@ -185,6 +185,8 @@ def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = 
                                         threads=threads, progress=progress)
     image = renderer.render(scene, depth=depth, error=error, values=values, threads=threads,
                             progress=progress)
+    for advice in _pellucid.surface_advice(scene):
+        warnings.warn(advice, Note, stacklevel=2)
     advice = _pellucid.picture_advice(scene, image)
     if advice is not None:
         warnings.warn(advice, Note, stacklevel=2)

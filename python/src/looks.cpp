@@ -89,6 +89,16 @@ Returns the looks by name, each with its description.)");
       },
       py::arg("scene"), py::arg("image"), R"(
 Returns why a picture shows next to nothing, or is burnt, and what to do; None: it is neither.)");
+  module.def(
+      "surface_advice",
+      [](const py::object& scene) {
+        const PythonScene read = read_scene(scene);
+        const ReleasedLock released;
+        return surface_advice(read.scene);
+      },
+      py::arg("scene"), R"(
+Returns a sentence for each layer whose isosurfaces are at values that its data do not have, or
+whose slices miss its data.)");
   module.def("look_lights", &look_lights_of, py::arg("camera") = py::none(), R"(
 Returns the lights of a look in light, for a Camera or the default one: one at the eye and one from
 the upper left, fixed in the world.)");

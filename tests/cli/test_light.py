@@ -172,6 +172,18 @@ class Light(ProgramTest):
         self.assertIn(b"the shading is left out", result.stderr)
         self.assertIn(b"the gradient opacity is left out", result.stderr)
 
+    def test_says_which_surfaces_show_nothing(self):
+        result = self.run_program("render", "a.npy", "--iso", "5", "--iso", "0.5", "--slice",
+                                  "z=99", "-o", "a.png", "--size", "16")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        notes = result.stderr.decode()
+        text = "isosurface 5 shows nothing: the data have values from 0 to 1"
+        self.assertEqual(notes.count(text), 1, notes)
+        self.assertEqual(notes.count("slice 1 misses the data, which have x from 0 to 4"), 1, notes)
+        result = self.run_program("render", "a.npy", "--iso", "0.5", "--iso", "0", "--slice", "z=0",
+                                  "-o", "a.png", "--size", "16")
+        self.assertNotRegex(result.stderr.decode(), "shows? nothing|misses")
+
     def test_wrong_arguments(self):
         self.write("two.json", json.dumps({"layers": [{"field": {"file": "a.npy"}}] * 2}))
         self.write("labels.json", json.dumps({"layers": [{"labels": {"file": "a.npy"}}]}))

@@ -43,6 +43,9 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
   for (const auto& [channel, count] : prepared.labels) {
     print_note((channel == field_channel ? "" : "channel " + channel + ": ") + labels_text(count));
   }
+  if (arguments.renders() && prepared.whole_layers.empty()) {  // a rank has a part of the data
+    for (const std::string& advice : surface_advice(prepared.scene)) print_note(advice);
+  }
   if (const double used = prepared.scene.integration.tolerance; used != prepared.tolerance_asked) {
     print_note(fmt::format("tolerance {} is outside the limits: using {}", prepared.tolerance_asked,
                            used));

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pellucid/scene/image.h"
 #include "pellucid/scene/scene.h"
@@ -19,5 +20,9 @@ namespace pellucid {
 ///
 /// The scene must have passed check_data(); the image is its picture.
 std::optional<std::string> picture_advice(const Scene& scene, const Image& image);
+
+/// Returns a sentence for each visible layer with isosurfaces at values that its data do not have,
+/// and for each with slices whose planes miss its data. The scene must have passed check_data().
+std::vector<std::string> surface_advice(const Scene& scene);
 
 }  // namespace pellucid

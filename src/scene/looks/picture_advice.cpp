@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -71,7 +72,88 @@ std::string why_empty(const Scene& scene, bool any) {
              : "no ray meets anything that absorbs; look at the camera, the clips and the function";
 }
 
+/// Returns the range of a variable of a layer, and whether it is known and not empty.
+std::optional<Support> range_of(const Layer& layer, int channel) {
+  const auto of_statistics = [](const VolumeStatistics& statistics) -> std::optional<Support> {
+    if (statistics.finite == 0) return std::nullopt;
+    return Support{statistics.minimum, statistics.maximum};
+  };
+  if (const auto* const volume = std::get_if<VolumeContent>(&layer.content)) {
+    return of_statistics(volume->volume->statistics());
+  }
+  if (const auto* const mesh = std::get_if<MeshContent>(&layer.content)) {
+    return of_statistics(mesh->mesh->statistics(channel));
+  }
+  if (const auto* const channels = std::get_if<ChannelsContent>(&layer.content)) {
+    return of_statistics((*channels->channels)[channel].volume->statistics());
+  }
+  return std::nullopt;
+}
+
+/// Returns whether a plane has all of a layer's data on one side.
+bool misses(const Slice& slice, const Layer& layer) {
+  bool any_before = false, any_behind = false;
+  for (const Vec3<double>& corner : world_corners(layer)) {
+    const double side = dot(corner - slice.point, slice.normal);
+    any_before = any_before || side <= 0;
+    any_behind = any_behind || side >= 0;
+  }
+  return !(any_before && any_behind);
+}
+
+std::string with_and(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  }
+  return text;
+}
+
 }  // namespace
+
+std::vector<std::string> surface_advice(const Scene& scene) {
+  std::vector<std::string> advice;
+  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    const Layer& layer = scene.layers[i];
+    if (!layer.visible) continue;
+    const std::string where = scene.layers.size() == 1 ? ""
+                              : layer.name.empty()     ? "layer " + std::to_string(i + 1) + ": "
+                                                       : layer.name + ": ";
+    std::vector<std::string> values;
+    std::string range;
+    for (const Isosurface& surface : layer.isosurfaces) {
+      const auto data = range_of(layer, surface.channel);
+      if (!data || (surface.value >= data->lower && surface.value <= data->upper)) continue;
+      values.push_back(number(surface.value));
+      range = number(data->lower) + " to " + number(data->upper);
+    }
+    if (!values.empty()) {
+      advice.push_back(where + (values.size() == 1 ? "isosurface " : "isosurfaces ") +
+                       with_and(values) + (values.size() == 1 ? " shows" : " show") +
+                       " nothing: the data have values from " + range);
+    }
+    std::vector<std::string> slices;
+    for (std::size_t n = 0; n < layer.slices.size(); ++n) {
+      if (misses(layer.slices[n], layer)) slices.push_back(std::to_string(n + 1));
+    }
+    if (slices.empty()) continue;
+    Vec3<double> lower = world_corners(layer)[0], upper = lower;
+    for (const Vec3<double>& corner : world_corners(layer)) {
+      for (int a = 0; a < 3; ++a) {
+        lower[a] = std::min(lower[a], corner[a]);
+        upper[a] = std::max(upper[a], corner[a]);
+      }
+    }
+    std::string box;
+    for (int a = 0; a < 3; ++a) {
+      box += std::string(a == 0 ? "" : ", ") + "xyz"[a] + " from " + number(lower[a]) + " to " +
+             number(upper[a]);
+    }
+    advice.push_back(where + (slices.size() == 1 ? "slice " : "slices ") + with_and(slices) +
+                     (slices.size() == 1 ? " misses" : " miss") + " the data, which have " + box);
+  }
+  return advice;
+}
 
 std::optional<std::string> picture_advice(const Scene& scene, const Image& image) {
   std::size_t seen = 0, burnt = 0;

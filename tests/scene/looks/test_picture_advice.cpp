@@ -54,6 +54,34 @@ TEST(PictureAdvice, SaysWhyNothingIsSeen) {
   EXPECT_FALSE(picture_advice(some, image_of({0, 0, 0, 1}, 10, {})));
 }
 
+TEST(PictureAdvice, NamesSurfacesThatShowNothing) {
+  Scene scene = scene_of({{0, 0, {}}});
+  Layer& layer = scene.layers.front();
+  const VolumeStatistics values = std::get<VolumeContent>(layer.content).volume->statistics();
+  const std::array<Vec3<double>, 8> corners = world_corners(layer);
+  layer.isosurfaces = {{values.maximum}, {values.minimum}};
+  layer.slices = {{corners[0], {0, 0, 1}}, {corners[7], {1, 1, 1}}};
+  EXPECT_TRUE(surface_advice(scene).empty());
+  layer.isosurfaces.push_back({values.maximum + 1});
+  auto advice = surface_advice(scene);
+  ASSERT_EQ(advice.size(), 1u);
+  EXPECT_EQ(advice[0].find("isosurface "), 0u);
+  EXPECT_NE(advice[0].find(" shows nothing: the data have values from "), std::string::npos);
+  layer.isosurfaces.push_back({values.minimum - 1});
+  layer.slices.push_back({corners[7] + Vec3<double>{0, 0, 1e-3}, {0, 0, -2}});
+  advice = surface_advice(scene);
+  ASSERT_EQ(advice.size(), 2u);
+  EXPECT_EQ(advice[0].find("isosurfaces "), 0u);
+  EXPECT_NE(advice[0].find(" show nothing"), std::string::npos);
+  EXPECT_EQ(advice[1].find("slice 3 misses the data, which have x from "), 0u) << advice[1];
+  scene.layers.push_back(scene.layers.front());
+  scene.layers.back().name = "second";
+  scene.layers.front().visible = false;
+  advice = surface_advice(scene);
+  ASSERT_EQ(advice.size(), 2u);
+  EXPECT_EQ(advice[0].find("second: isosurfaces "), 0u);
+}
+
 TEST(PictureAdvice, SaysWhatBurnt) {
   const Scene scene = scene_of({{0.1, 0, {}}, {0.2, 1, {}}});
   const std::array<float, 4> seen{0.5F, 0.5F, 0.5F, 0.5F};
