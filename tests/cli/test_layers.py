@@ -4,7 +4,7 @@
 import json
 import unittest
 
-from program import HAZE, ProgramTest, npy, ramp
+from program import HAZE, ProgramTest, npy, pixel, png, ramp
 
 # Labels 0, 2 and 5 in slabs along x.
 SLABS = [(0, 2, 2, 5, 5)[i] for _ in range(25) for i in range(5)]
@@ -66,6 +66,42 @@ class Layers(ProgramTest):
         self.assertEqual(report["pixels_over"], 0)
         self.assertLessEqual(report["largest_error"], report["tolerance"])
         self.assertGreater(report["largest_channel"], 0)
+
+    def test_labels_are_seen_inside_of_a_volume(self):
+        n = 24
+        at = [(x, y, z) for z in range(n) for y in range(n) for x in range(n)]
+        radius = [((x - 11.5) ** 2 + (y - 11.5) ** 2 + (z - 11.5) ** 2) ** 0.5 for x, y, z in at]
+        self.write("body.npy", npy([100 if r < 11 else 0 for r in radius], (n, n, n)))
+        self.write("core.npy", npy([1 if r < 4 else 0 for r in radius], (n, n, n), "<u1"))
+        picture = ["-o", "o.png", "--size", "41", "--view", "front", "--background", "black"]
+        result = self.run_program("render", "body.npy", "--labels", "core.npy", *picture)
+        self.assertIn(b"look haze, for labels inside of it: grey, a tenth as dense", result.stderr)
+        red, green, blue = pixel(png(self.read("o.png")), 20, 20)[:3]
+        body = pixel(png(self.read("o.png")), 8, 20)[:3]
+        self.assertGreater(red, 2 * blue)  # the first label is orange
+        self.assertGreater(min(body), 10)  # what is around it is seen too, in grey
+        self.assertLessEqual(max(body) - min(body), 1)
+        # Opaque, it hides them.
+        self.succeed("render", "body.npy", "--labels", "core.npy", "--look", "haze", "--opacity",
+                     "1000", "--colormap", "gray", *picture)
+        shown = pixel(png(self.read("o.png")), 20, 20)[:3]
+        self.assertLessEqual(max(shown) - min(shown), 2)
+
+    def test_the_look_around_labels_is_changed_by_options(self):
+        def points(*arguments):
+            layers = self.saved("a.npy", *arguments)["layers"]
+            return layers[0]["transfer_function"]["points"]
+
+        haze = points("--look", "haze", "--labels", "labels.npy")
+        for options, factor in ([], 0.1), (["--opacity", "3"], 0.3):
+            around = points("--labels", "labels.npy", *options)
+            self.assertAlmostEqual(max(p["extinction"] for p in around),
+                                   factor * max(p["extinction"] for p in haze), places=9)
+            self.assertTrue(all(len(set(p["color"])) == 1 for p in around))
+        colored = points("--labels", "labels.npy", "--colormap", "viridis")
+        self.assertFalse(all(len(set(p["color"])) == 1 for p in colored))
+        self.assertEqual(points("--labels", "labels.npy", "--tf", "tf.json"), points("--tf",
+                                                                                    "tf.json"))
 
     def test_pictures_are_within_the_tolerance(self):
         run = ("render", "a.npy", "--tf", "tf.json", "--labels", "labels.npy", "--clip",

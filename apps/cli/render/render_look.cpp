@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "arguments/parse.h"
+#include "pellucid/scene/color_map.h"
 #include "pellucid/scene/look.h"
 #include "render.h"
 
@@ -42,6 +43,22 @@ void refuse_beside_look(const RenderArguments& arguments) {
   }
 }
 
+/// A volume around labels is a tenth as dense as one that is looked at itself, and grey: the colors
+/// are those of the labels.
+constexpr double context_opacity = 0.1;
+
+/// Returns whether the first layer is a volume that nothing says the look of, and all others are
+/// labels.
+bool is_context_of_labels(const RenderArguments& arguments, const PreparedScene& prepared) {
+  const std::vector<LayerDescription>& layers = prepared.description.layers;
+  const LayerDescription& first = layers.front();
+  return prepared.transfer_function_from == "default" && !arguments.is_scene() &&
+         arguments.look.empty() && layers.size() > 1 && !first.mesh && !first.labels &&
+         first.channels.empty() && !first.projection &&
+         std::all_of(layers.begin() + 1, layers.end(),
+                     [](const LayerDescription& layer) { return layer.labels.has_value(); });
+}
+
 }  // namespace
 
 void want_look(const RenderArguments& arguments, PreparedScene& prepared) {
@@ -54,11 +71,17 @@ void want_look(const RenderArguments& arguments, PreparedScene& prepared) {
                      ": changes a function, but --iso shows surfaces alone; give --iso "
                      "its colors and opacities, or add --tf or --preset");
   }
+  const bool is_context = is_context_of_labels(arguments, prepared);
   const bool is_default = prepared.transfer_function_from == "default" && !arguments.is_scene() &&
                           prepared.description.layers.size() == 1;
-  if (arguments.look.empty() && !is_default) return;
+  if (arguments.look.empty() && !is_default && !is_context) return;
   WantedLook look;
-  look.name = lower_case(arguments.look);
+  look.name = is_context ? "haze" : lower_case(arguments.look);
+  if (is_context) {
+    FunctionChange& change = prepared.description.layers.front().function_change;
+    change.opacity *= context_opacity;
+    if (change.colors.empty()) change.colors = color_map("gray");
+  }
   const auto is_it = [&](const LookName& known) { return known.name == look.name; };
   if (!look.name.empty() && std::ranges::none_of(looks(), is_it) &&
       std::ranges::none_of(looks_of_meshes(), is_it)) {
@@ -69,7 +92,10 @@ void want_look(const RenderArguments& arguments, PreparedScene& prepared) {
   look.has_function = arguments.print_tf || !arguments.save_tf.empty();
   look.keeps_shading = !arguments.light.shading.empty();
   prepared.look = std::make_shared<Look>();
-  look.chosen = [told = prepared.look](const Look& chosen) { *told = chosen; };
+  look.chosen = [told = prepared.look, is_context](const Look& chosen) {
+    *told = chosen;
+    if (is_context) told->reason = "labels inside of it: grey, a tenth as dense";
+  };
   prepared.description.layers.front().look = std::move(look);
 }
 
