@@ -176,12 +176,18 @@ class Colors(ProgramTest):
 
     @unittest.skipUnless(HAS_CAIRO, "built without Cairo")
     def test_says_that_there_is_nothing_to_draw(self):
-        result = self.run_program("render", "ramp.npy", "--gaussian",
-                                  "value=50~10; extinction 2", "--color-bar", "-o", "a.png",
-                                  "--size", "16")
+        result = self.run_program("render", "ramp.npy", "--tf", "tf.json", "--opacity", "0",
+                                  "--color-bar", "-o", "a.png", "--size", "16")
         self.assertEqual(result.returncode, 0)
-        self.assertIn(b"no color bar: it shows labels, and functions of one variable",
-                      result.stderr)
+        self.assertIn(b"no color bar: it shows functions, surfaces and labels", result.stderr)
+
+    @unittest.skipUnless(HAS_CAIRO, "built without Cairo")
+    def test_legend_of_gaussians(self):
+        self.succeed("render", "ramp.npy", "--gaussian", "value=50~10; extinction 2; color #30c060",
+                     "--color-bar", "-o", "a.png", "--size", "160", "--background", "black")
+        _, _, _, rows = png(self.read("a.png"))
+        colors = {row[3 * x:3 * x + 3] for row in rows for x in range(100, 160)}
+        self.assertIn(bytes((0x30, 0xc0, 0x60)), colors)
 
     @unittest.skipIf(HAS_CAIRO, "built with Cairo")
     def test_color_bar_needs_cairo(self):

@@ -346,7 +346,7 @@ LOOKUP_TABLE default
                        "--size", "32000x30000", "--figure", "a.png")
 
     def test_no_bars(self):
-        self.options = ["--size", "30", "--gaussian", "value=50~10; extinction 2"]
+        self.options = ["--size", "30", "--tf", "tf.json", "--opacity", "0"]
         svg = self.svg()
         self.assertRaises(ValueError, svg.bar)
         left, _, right, _ = svg.picture()
@@ -360,6 +360,8 @@ LOOKUP_TABLE default
         self.write("labels.npy", npy([i % 3 for i in range(64)], (4, 4, 4), "<u1"))
         self.options = ["--size", "30"]
         self.assertRegex(self.caption("--labels", "labels.npy"), r"labels\S* 1 2")
+        self.options += ["--gaussian", "value=50~10; extinction 2"]
+        self.assertIn("value 50", self.caption())
 
     def test_refuses_in_one_line(self):
         render = ["render", "ramp.npy", *self.options]

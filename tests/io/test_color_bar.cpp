@@ -81,6 +81,28 @@ TEST(ColorBar, NamesTheLabelsThatAreThere) {
   EXPECT_EQ(bars[0].entries[1].name, "2");
 }
 
+TEST(ColorBar, HasTheTermsOfFunctionsOfSeveralVariables) {
+  const std::vector<Channel> two{{"t1", "", sphere()}, {"t2", "ms", sphere()}};
+  const std::vector<GaussianPrimitive> gaussians{
+      {{0, 1}, {300, 80}, matrix_from_widths({10, 5}), 1, {1, 0, 0}},
+      {{0, 1}, {1, 7.5}, {{0, 0.1}}, 1, {0, 1, 0}},
+      {{0}, {1}, matrix_from_widths({1}), 0, {0, 0, 1}}};
+  const std::vector<ChannelTransferFunction> tables{{1, *ramp()}};
+  Described made = with(
+      ChannelsContent{std::make_shared<const Channels>(two),
+                      std::make_shared<const MultivariateTransferFunction>(2, gaussians, tables)});
+  const auto bars = color_bars(made.description, made.scene);
+  ASSERT_EQ(bars.size(), 2u);
+  EXPECT_EQ(bars[0].title, "t2 (ms)");
+  EXPECT_EQ(bars[0].range, (std::array<double, 2>{2, 6}));
+  ASSERT_TRUE(bars[0].function);
+  EXPECT_EQ(bars[0].function->points().size(), 3u);
+  ASSERT_EQ(bars[1].entries.size(), 2u);
+  EXPECT_EQ(bars[1].entries[0].name, "t1 300, t2 (ms) 80");
+  EXPECT_EQ(bars[1].entries[1].name, "t2 (ms) 7.5");
+  EXPECT_EQ(bars[1].entries[1].color.g, 1);
+}
+
 TEST(ColorBar, IsDrawnOverTheRightEdge) {
   try {
     check_draws_color_bars();

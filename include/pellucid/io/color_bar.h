@@ -30,13 +30,14 @@ struct ColorBar {
 std::string variable_title(const LayerDescription& description, const Layer& layer,
                            int channel = 0);
 /// Returns the legends of the visible layers, in their order: one of the function of one variable
-/// if it absorbs or colors slices, with isosurfaces as entries; the colors of slices of several
-/// variables; and of labels an entry each. Empty if there is nothing to say: as of Gaussians.
+/// if it absorbs or colors slices, with isosurfaces as entries; of a function of several variables
+/// one for each term of one of them, and an entry for each Gaussian; the colors of slices; and of
+/// labels an entry each. Empty if there is nothing to say.
 std::vector<ColorBar> color_bars(const SceneDescription& description, const Scene& scene);
 
 /// Message where there is none.
 inline constexpr const char* no_color_bars =
-    "no color bar: it shows labels, and functions of one variable, but there are none";
+    "no color bar: it shows functions, surfaces and labels, but there are none";
 
 /// Colors of a bar at the middles of equal parts of its range, from the least value on.
 struct BarSamples {

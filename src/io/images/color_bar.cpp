@@ -63,6 +63,68 @@ void add_labels(const LabelTable& table, const LabelVolume& labels, ColorBar& ba
   if (left_out > 0) bar.title += " (and " + std::to_string(left_out) + " more)";
 }
 
+/// Returns the name of a variable with its unit.
+std::string channel_title(const Layer& layer, int channel) {
+  if (const auto* const channels = std::get_if<ChannelsContent>(&layer.content)) {
+    const Channel& shown = (*channels->channels)[channel];
+    return with_unit(shown.name, shown.unit);
+  }
+  const auto* const mesh = std::get_if<MeshContent>(&layer.content);
+  if (mesh == nullptr) return {};
+  return with_unit((*mesh->mesh)[channel].name, (*mesh->mesh)[channel].unit);
+}
+
+/// Returns the middle of a Gaussian, of the variables that it depends on: "t1 300, t2 80".
+std::string gaussian_name(const Layer& layer, const GaussianPrimitive& gaussian) {
+  std::string name;
+  for (std::size_t c = 0; c < gaussian.channels.size(); ++c) {
+    const bool depends = std::ranges::any_of(
+        gaussian.matrix, [&](const std::vector<double>& row) { return row[c] != 0; });
+    if (!depends) continue;
+    name += (name.empty() ? "" : ", ") + channel_title(layer, gaussian.channels[c]) + " " +
+            short_number(gaussian.center[c]);
+  }
+  return name.empty() ? "all values" : name;
+}
+
+/// Adds the legends of a function of several variables: a bar for each of its functions of one of
+/// them, and an entry for each Gaussian.
+void add_terms(const Layer& layer,
+               const std::shared_ptr<const MultivariateTransferFunction>& function,
+               std::vector<ColorBar>& bars) {
+  for (const ChannelTransferFunction& table : function->tables()) {
+    if (!absorbs(table.function)) continue;
+    ColorBar bar;
+    bar.title = channel_title(layer, table.channel);
+    bar.function = std::shared_ptr<const TransferFunction>(function, &table.function);
+    bar.range = absorbing_range(table.function);
+    bars.push_back(std::move(bar));
+  }
+  ColorBar legend;
+  legend.title = layer.name;
+  std::size_t left_out = 0;
+  for (const GaussianPrimitive& gaussian : function->primitives()) {
+    if (!(gaussian.extinction > 0)) continue;
+    if (legend.entries.size() == max_entries) {
+      ++left_out;
+      continue;
+    }
+    legend.entries.push_back({gaussian_name(layer, gaussian), gaussian.color});
+  }
+  if (left_out > 0) legend.title += " (and " + std::to_string(left_out) + " more)";
+  if (!legend.entries.empty()) bars.push_back(std::move(legend));
+}
+
+/// Returns the function of several variables of a layer; null: it has none.
+std::shared_ptr<const MultivariateTransferFunction> function_of_several(const Layer& layer) {
+  if (const auto* const channels = std::get_if<ChannelsContent>(&layer.content)) {
+    return channels->transfer_function;
+  }
+  const auto* const mesh = std::get_if<MeshContent>(&layer.content);
+  if (mesh == nullptr || mesh->multivariate() == nullptr) return nullptr;
+  return std::get<std::shared_ptr<const MultivariateTransferFunction>>(mesh->transfer_function);
+}
+
 /// Returns the function that a layer's legend shows; null: none.
 std::shared_ptr<const TransferFunction> shown_function(const Layer& layer, bool& shows_opacity) {
   std::shared_ptr<const TransferFunction> function;
@@ -165,6 +227,7 @@ std::vector<ColorBar> color_bars(const SceneDescription& description, const Scen
   for (std::size_t i = 0; i < scene.layers.size(); ++i) {
     const Layer& layer = scene.layers[i];
     if (!layer.visible) continue;
+    if (const auto function = function_of_several(layer)) add_terms(layer, function, bars);
     ColorBar bar;
     bar.function = shown_function(layer, bar.shows_opacity);
     const int channel = bar.shows_opacity ? 0 : shown_channel(layer);
