@@ -33,7 +33,7 @@ if(PELLUCID_WITH_CAIRO)
   if(PELLUCID_CAIRO_INCLUDE_DIR AND PELLUCID_CAIRO_LIBRARY)
     message(STATUS "Color bars and figures are drawn by Cairo")
     pellucid_module(pellucid_cairo
-      SOURCES images/cairo_draw.cpp images/cairo_figure.cpp
+      SOURCES images/cairo_draw.cpp images/cairo_figure.cpp images/figure_composer.cpp
       LIBRARIES "${PELLUCID_CAIRO_LIBRARY}")
     target_include_directories(pellucid_cairo SYSTEM PRIVATE "${PELLUCID_CAIRO_INCLUDE_DIR}")
   elseif(NOT PELLUCID_WITH_CAIRO STREQUAL "AUTO")
