@@ -160,6 +160,47 @@ AskHistogram read_histogram(Members& members) {
   return ask;
 }
 
+/// A number far beyond all data; squares of it are numbers.
+constexpr double farthest = 1e30;
+
+template <std::size_t count>
+std::array<double, count> read_position(Members& members, const char* key) {
+  const Json list = members.take(key);
+  std::array<double, count> position;
+  const auto is_near = [](const Json& value) {
+    return value.is_number() && std::abs(value.get<double>()) <= farthest;
+  };
+  if (!list.is_array() || list.size() != count || !std::ranges::all_of(list, is_near)) {
+    members.fail(key, fmt::format("is not a list of {} numbers within {}", count, farthest));
+  }
+  for (std::size_t i = 0; i < count; ++i) position[i] = list[i].get<double>();
+  return position;
+}
+
+AskSlice read_slice(Members& members) {
+  AskSlice ask;
+  ask.plane.axis = members.integer("axis", 0, 2);
+  ask.plane.position = members.number("position", -farthest, farthest);
+  ask.plane.from = read_position<2>(members, "from");
+  ask.plane.to = read_position<2>(members, "to");
+  for (const std::size_t a : {0, 1}) {
+    if (ask.plane.from[a] == ask.plane.to[a]) members.fail("to", "has a number of from");
+  }
+  ask.plane.columns = members.integer("columns", 1, largest_slice_edge);
+  ask.plane.rows = members.integer("rows", 1, largest_slice_edge);
+  if (members.has("layer")) {
+    ask.layer = members.layer();
+    ask.channel = members.integer("channel", 0, 1023);
+  }
+  return ask;
+}
+
+Probe read_probe(Members& members) {
+  Probe probe{members.share("x"), members.share("y")};
+  if (members.has("picks")) probe.picks = members.flag("picks");
+  return probe;
+}
+
 struct Kind {
   std::string_view type;
   Command (*read)(Members&);
@@ -226,9 +267,12 @@ constexpr Kind kinds[] = {
      [](Members& m) -> Command {
        return AskThumbnail{m.layer(), m.take("function")};
      }},
-    {"probe",
+    {"probe", [](Members& m) -> Command { return read_probe(m); }},
+    {"slice", [](Members& m) -> Command { return read_slice(m); }},
+    {"locate",
      [](Members& m) -> Command {
-       return Probe{m.share("x"), m.share("y")};
+       const auto [x, y, z] = read_position<3>(m, "position");
+       return Locate{{x, y, z}};
      }},
     {"handle",
      [](Members& m) -> Command {

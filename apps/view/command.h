@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "layer_values.h"
 #include "pellucid/scene/scene.h"
 
 namespace pellucid::view {
@@ -102,6 +103,17 @@ struct AskThumbnail {
 /// Asks what is seen at a position.
 struct Probe {
   double x, y;
+  bool picks = false;  ///< True for a click; the answer says so too
+};
+/// Asks for values and labels in a slice.
+struct AskSlice {
+  SlicePlane plane;
+  std::optional<std::size_t> layer;  ///< whose values are asked for; none: labels alone
+  int channel = 0;
+};
+/// Asks for the data at a position of the world.
+struct Locate {
+  Vec3<double> position;
 };
 /// Moves the handle of a clip of the scene (overlay.h).
 struct DragHandle {
@@ -154,13 +166,14 @@ struct Save {
 using Command =
     std::variant<Resize, Turn, Pan, Zoom, Roll, Center, ResetCamera, LookFrom, SetProjection,
                  SetTolerance, Edit, Undo, Redo, Suggest, CancelFit, ImportFunction, ExportFunction,
-                 AskHistogram, AskThumbnail, Probe, DragHandle, ShowErrorMap, ChooseComponent,
-                 ChooseArray, ChooseTime, ListFile, ListFolder, OpenFile, OpenUpload, Save>;
+                 AskHistogram, AskThumbnail, Probe, AskSlice, Locate, DragHandle, ShowErrorMap,
+                 ChooseComponent, ChooseArray, ChooseTime, ListFile, ListFolder, OpenFile,
+                 OpenUpload, Save>;
 
 /// Largest message of a page, in bytes: an imported color map with some ten thousand nodes.
 inline constexpr std::size_t largest_message = std::size_t(2) << 20;
-/// Largest edges of a picture, in pixels.
-inline constexpr int largest_edge = 8192;
+/// Largest edges of a picture, in pixels, and of a slice, in values.
+inline constexpr int largest_edge = 8192, largest_slice_edge = 4096;
 
 /// Parses a message. Throws Error with one line that names what is wrong. Any bytes are safe.
 Command parse_command(std::string_view message);

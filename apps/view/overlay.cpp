@@ -230,19 +230,27 @@ void drag_shape(ClipCylinder& cylinder, const Scene& scene, const PictureMap& ma
 
 PictureMap::PictureMap(const Scene& scene)
     : frame_(make_camera_frame(scene.camera, scene.size)),
-      aspect_(static_cast<double>(scene.size.width) / scene.size.height) {}
+      aspect_(static_cast<double>(scene.size.width) / scene.size.height) {
+  const auto row_of = [&](const Vec3<double>& direction, double at_camera) {
+    return std::array{direction.x, direction.y, direction.z,
+                      at_camera - dot(direction, frame_.position)};
+  };
+  // At the camera w is 0, or 1 everywhere for parallel rays.
+  const double w = frame_.perspective ? 0 : 1;
+  const Vec3<double> forward = frame_.forward * (1 - w);
+  const Vec3<double> right = frame_.right * (1 / dot(frame_.right, frame_.right));
+  const Vec3<double> up = frame_.up * (1 / dot(frame_.up, frame_.up));
+  matrix_ = {row_of((forward + right) * 0.5, w / 2), row_of((forward - up) * 0.5, w / 2),
+             row_of(forward, w)};
+}
 
 std::optional<PicturePoint> PictureMap::operator()(const Vec3<double>& position) const {
-  const Vec3<double> offset = position - frame_.position;
-  double scale = 1;
-  if (frame_.perspective) {
-    const double distance = dot(offset, frame_.forward);
-    if (!(distance > 0)) return {};
-    scale = 1 / distance;
-  }
-  const double x = scale * dot(offset, frame_.right) / dot(frame_.right, frame_.right);
-  const double y = scale * dot(offset, frame_.up) / dot(frame_.up, frame_.up);
-  return PicturePoint{(1 + x) / 2, (1 - y) / 2};
+  const auto times = [&](const std::array<double, 4>& row) {
+    return row[0] * position.x + row[1] * position.y + row[2] * position.z + row[3];
+  };
+  const double w = times(matrix_[2]);
+  if (!(w > 0)) return {};
+  return PicturePoint{times(matrix_[0]) / w, times(matrix_[1]) / w};
 }
 
 Vec3<double> PictureMap::direction(const Vec3<double>& world) const {
@@ -274,6 +282,7 @@ Json overlay_json(const Scene& scene, const Lettering& lettering) {
   return {{"axes", std::move(axes)},
           {"height", height_at_focal_point(scene.camera)},
           {"unit", lettering.unit},
+          {"matrix", map.matrix()},
           {"clips", std::move(clips)}};
 }
 

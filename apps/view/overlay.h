@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,10 @@ class PictureMap {
  public:
   explicit PictureMap(const Scene& scene);
 
+  /// Rows of the matrix that takes (x, y, z, 1) of the world to homogeneous coordinates of the
+  /// picture: x · w, y · w and w, which is positive in front of the camera.
+  using Matrix = std::array<std::array<double, 4>, 3>;
+  const Matrix& matrix() const noexcept { return matrix_; }
   /// Returns where a position is seen, or none if it is behind the camera.
   std::optional<PicturePoint> operator()(const Vec3<double>& position) const;
   /// Returns a world direction as seen: x to the right, y downwards, z away from the eye. Length 1
@@ -30,6 +35,7 @@ class PictureMap {
  private:
   CameraFrame<double> frame_;
   double aspect_;
+  Matrix matrix_;
 };
 
 /// Elements that a page draws over the picture besides its own controls.
@@ -41,7 +47,7 @@ struct Lettering {
 /// Returns the axes of the world as seen, the height of the picture at the focal point in world
 /// units, and the outlines and handles of the scene's clips:
 ///
-///   {"axes": [{"plus", "minus", "x", "y", "z"}], "height", "unit",
+///   {"axes": [{"plus", "minus", "x", "y", "z"}], "height", "unit", "matrix": (PictureMap's),
 ///    "clips": [{"lines": [[x, y, x, y]], "handles": [{"name", "x", "y"}]}]}
 Json overlay_json(const Scene& scene, const Lettering& lettering);
 

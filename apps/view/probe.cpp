@@ -4,82 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "pellucid/field/sample.h"
+#include "histograms.h"
+#include "layer_values.h"
 
 namespace pellucid::view {
 
 namespace {
-
-/// Returns the value of a volume, interpolated as it is rendered; none outside and in vacuum.
-std::optional<double> value_at(const Volume& volume, const Vec3<double>& position) {
-  const Vec3<double> at = volume.grid_from_world().point(position);
-  const Vec3<double> lower = volume.grid_lower(), upper = volume.grid_upper();
-  for (int a = 0; a < 3; ++a) {
-    if (!(at[a] >= lower[a] && at[a] <= upper[a])) return {};
-  }
-  const double value =
-      volume.visit([&](const auto& grid) { return sample_value<double>(grid, at); });
-  return std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
-
-/// Returns the label of the nearest voxel of a uniform grid.
-std::optional<double> label_at(const Volume& volume, const Vec3<double>& position) {
-  if (!value_at(volume, position)) return {};
-  const auto& [dimensions, centering, placement, coordinates, name] = volume.description();
-  const Vec3<double> along = inverse(placement.direction) * (position - placement.origin);
-  std::size_t index = 0;
-  for (int a = 2; a >= 0; --a) {
-    if (!coordinates[static_cast<std::size_t>(a)].empty()) return {};
-    const int size = dimensions[static_cast<std::size_t>(a)];
-    const double nearest = std::floor(along[a] / placement.spacing[a] + 0.5);
-    const double clamped = std::fmin(std::fmax(nearest, 0), size - 1);
-    index = index * static_cast<std::size_t>(size) + static_cast<std::size_t>(clamped);
-  }
-  return std::visit([&](const auto& data) { return static_cast<double>(data.data()[index]); },
-                    volume.data());
-}
-
-/// The tetrahedron that holds a position, and the weights of its corners.
-struct Inside {
-  std::size_t tetrahedron;
-  std::array<double, 4> weights;
-};
-
-/// Looks at one tetrahedron after the other: some milliseconds for a million.
-std::optional<Inside> find_tetrahedron(const TetrahedralMesh& mesh, const Vec3<double>& position) {
-  for (std::size_t t = 0; t < mesh.tetrahedra().size(); ++t) {
-    std::array<Vec3<double>, 4> corners;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const auto point = mesh.tetrahedra()[t][static_cast<int>(i)];
-      corners[i] = mesh.points()[static_cast<std::size_t>(point)] - position;
-    }
-    std::array<double, 4> weights;
-    double sum = 0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Vec3<double>&a = corners[(i + 1) % 4], &b = corners[(i + 2) % 4],
-            &c = corners[(i + 3) % 4];
-      weights[i] = (i % 2 == 0 ? 1 : -1) * dot(a, cross(b, c));
-      sum += weights[i];
-    }
-    bool inside = sum != 0;
-    for (double& weight : weights) {
-      weight /= sum;
-      inside = inside && weight >= 0;
-    }
-    if (inside) return Inside{t, weights};
-  }
-  return {};
-}
-
-double value_in(const MeshChannels& mesh, int channel, const Inside& inside) {
-  if (mesh[channel].centering == Centering::cell) return mesh.value(channel, inside.tetrahedron);
-  double value = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const auto point = mesh.mesh().tetrahedra()[inside.tetrahedron][static_cast<int>(i)];
-    value += inside.weights[i] * mesh.value(channel, static_cast<std::size_t>(point));
-  }
-  return value;
-}
 
 struct Looked {
   std::vector<std::pair<std::string, double>> values;
@@ -87,43 +17,35 @@ struct Looked {
 };
 
 Looked look_at(const Layer& layer, const Vec3<double>& world) {
-  const Vec3<double> position = inverse(layer.transform).point(world);
+  const LayerValues layer_values(layer);
+  const std::vector<double> values = layer_values.at(world);
   Looked looked;
-  std::vector<double> numbers;
-  const auto add = [&](const std::string& channel, std::optional<double> value) {
-    if (!value) return;
-    looked.values.emplace_back(channel, *value);
-    numbers.push_back(*value);
-  };
-  const auto absorb = [&](const auto& function, std::size_t channels) {
-    if (numbers.size() != channels) return;
-    if constexpr (requires { function.evaluate(numbers.data()); }) {
-      looked.extinction = function.evaluate(numbers.data()).extinction;
+  const auto absorb = [&](const auto& function) {
+    if constexpr (requires { function.evaluate(values.data()); }) {
+      looked.extinction = function.evaluate(values.data()).extinction;
     } else {
-      looked.extinction = function.evaluate(numbers.front()).extinction;
+      looked.extinction = function.evaluate(values.front()).extinction;
     }
   };
-  if (const auto* volume = std::get_if<VolumeContent>(&layer.content)) {
-    add("value", value_at(*volume->volume, position));
-    absorb(volume->transfer_function->view<double>(), 1);
-  } else if (const auto* channels = std::get_if<ChannelsContent>(&layer.content)) {
-    for (const Channel& channel : *channels->channels) {
-      add(channel.name, value_at(*channel.volume, position));
-    }
-    absorb(*channels->transfer_function, static_cast<std::size_t>(channels->channels->count()));
-  } else if (const auto* mesh = std::get_if<MeshContent>(&layer.content)) {
-    const MeshChannels& data = *mesh->mesh;
-    const auto inside = find_tetrahedron(data.mesh(), position);
-    for (int c = 0; inside && c < data.count(); ++c) add(data[c].name, value_in(data, c, *inside));
-    if (mesh->univariate() != nullptr) absorb(mesh->univariate()->view<double>(), 1);
-    if (mesh->multivariate() != nullptr) {
-      absorb(*mesh->multivariate(), static_cast<std::size_t>(data.count()));
-    }
-  } else if (const auto* labels = std::get_if<LabelContent>(&layer.content)) {
-    add("label", label_at(labels->labels->volume(), position));
+  if (const auto* labels = std::get_if<LabelContent>(&layer.content)) {
+    const std::optional<std::int32_t> label = layer_values.label_at(world);
+    if (!label) return looked;
+    looked.values.emplace_back("label", *label);
     for (const LabelStyle& style : labels->table->styles()) {
-      if (!numbers.empty() && numbers.front() == style.label) looked.extinction = style.extinction;
+      if (*label == style.label) looked.extinction = style.extinction;
     }
+    return looked;
+  }
+  if (values.empty()) return looked;
+  const std::vector<std::string> names = channel_names_of(layer);
+  for (std::size_t i = 0; i < values.size(); ++i) looked.values.emplace_back(names[i], values[i]);
+  if (const auto* volume = std::get_if<VolumeContent>(&layer.content)) {
+    absorb(volume->transfer_function->view<double>());
+  } else if (const auto* channels = std::get_if<ChannelsContent>(&layer.content)) {
+    absorb(*channels->transfer_function);
+  } else if (const auto* mesh = std::get_if<MeshContent>(&layer.content)) {
+    if (mesh->univariate() != nullptr) absorb(mesh->univariate()->view<double>());
+    if (mesh->multivariate() != nullptr) absorb(*mesh->multivariate());
   }
   return looked;
 }
@@ -169,6 +91,7 @@ ProbeResult probe(Renderer& renderer, const Scene& scene, const Probe& at) {
 
 Json probe_json(const ProbeResult& result, const Probe& at) {
   Json json{{"type", "probe"}, {"x", at.x}, {"y", at.y}, {"opacity", result.opacity}};
+  if (at.picks) json["picks"] = true;
   json["optical_depth"] = std::isfinite(result.optical_depth) ? Json(result.optical_depth) : Json();
   if (result.position) {
     json["position"] = {result.position->x, result.position->y, result.position->z};

@@ -10,6 +10,7 @@
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/presets.h"
 #include "pellucid/scene/view_camera.h"
+#include "slice.h"
 
 namespace pellucid::view {
 
@@ -47,6 +48,22 @@ Json range_of(const Layer& layer) {
     return {statistics.minimum, statistics.maximum};
   }
   return {0, 1};
+}
+
+/// Returns the range of each channel that slices show.
+Json ranges_of(const Layer& layer) {
+  Json ranges = Json::array();
+  const auto add = [&](const VolumeStatistics& statistics) {
+    ranges.push_back({statistics.minimum, statistics.maximum});
+  };
+  if (const auto* volume = std::get_if<VolumeContent>(&layer.content)) {
+    add(volume->volume->statistics());
+  } else if (const auto* channels = std::get_if<ChannelsContent>(&layer.content)) {
+    for (const Channel& channel : *channels->channels) add(channel.volume->statistics());
+  } else if (const auto* mesh = std::get_if<MeshContent>(&layer.content)) {
+    for (int c = 0; c < mesh->mesh->count(); ++c) add(mesh->mesh->statistics(c));
+  }
+  return ranges;
 }
 
 Json box_of(const Scene& scene) {
@@ -146,6 +163,8 @@ Json scene_json(const SceneState& state, const std::vector<FileChoices>& choices
     layers.push_back({{"kind", kind_of(layer)},
                       {"channels", channel_names_of(layer)},
                       {"range", range_of(layer)},
+                      {"ranges", ranges_of(layer)},
+                      {"steps", slice_steps_json(layer)},
                       {"file", has_file(state.description().layers[i])},
                       {"components", choices[i].components},
                       {"arrays", choices[i].arrays},
@@ -166,6 +185,7 @@ Json scene_json(const SceneState& state, const std::vector<FileChoices>& choices
           {"box", box_of(state.scene())},
           {"presets", std::move(names)},
           {"sides", view_names()},
+          {"anatomical", lettering_of(state.description()).anatomical},
           {"can_undo", state.can_undo()},
           {"can_redo", state.can_redo()}};
 }

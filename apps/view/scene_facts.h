@@ -28,9 +28,9 @@ Lettering lettering_of(const SceneDescription& description);
 /// Returns the message that tells pages what is shown:
 ///
 ///   {"type": "scene", "scene": (scene file), "savable", "temporary": (whether its data go with the
-///    program), "layers": [{"kind", "channels", "range",
-///    "components", "arrays", "times"}], "box": {"lower", "upper"}, "presets": [...], "sides":
-///    [...], "can_undo", "can_redo"}
+///    program), "layers": [{"kind", "channels", "range", "ranges" (of each channel), "steps"
+///    (slice_steps_json()), "components", "arrays", "times"}], "box": {"lower", "upper"},
+///    "presets": [...], "sides": [...], "anatomical", "can_undo", "can_redo"}
 Json scene_json(const SceneState& state, const std::vector<FileChoices>& choices);
 
 }  // namespace pellucid::view

@@ -17,6 +17,7 @@
 #include "pellucid/scene/view_camera.h"
 #include "probe.h"
 #include "server/page_messages.h"
+#include "slice.h"
 #include "thumbnail.h"
 
 namespace pellucid::view {
@@ -30,6 +31,8 @@ constexpr std::size_t max_waiting_bytes = std::size_t{16} << 20;
 
 /// Until a frame is done, however long it takes.
 constexpr double endless = 1e9;
+/// Seconds of a turn between which slices are answered: some ten in a second.
+constexpr double short_turn = 0.1;
 
 constexpr const char* defect = "; this is a defect of pellucid, please report it";
 
@@ -42,6 +45,7 @@ bool starts_fit(const Command& command) {
 /// Returns whether a command only asks, so that the frame that is being rendered stays right.
 bool only_asks(const Command& command) {
   return std::holds_alternative<Probe>(command) || std::holds_alternative<Save>(command) ||
+         std::holds_alternative<AskSlice>(command) || std::holds_alternative<Locate>(command) ||
          std::holds_alternative<AskHistogram>(command) ||
          std::holds_alternative<AskThumbnail>(command) ||
          std::holds_alternative<ExportFunction>(command) ||
@@ -70,7 +74,11 @@ bool is_edit(const Command& command) {
 
 /// Returns whether a later command makes an earlier one of the same page needless.
 bool replaces(const Command& later, const Command& earlier) {
-  if (std::holds_alternative<Probe>(later)) return std::holds_alternative<Probe>(earlier);
+  if (std::holds_alternative<Probe>(later)) {
+    const Probe* const probe = std::get_if<Probe>(&earlier);
+    return probe != nullptr && !probe->picks;
+  }
+  if (std::holds_alternative<Locate>(later)) return std::holds_alternative<Locate>(earlier);
   const Edit *const newer = std::get_if<Edit>(&later), *const older = std::get_if<Edit>(&earlier);
   return newer != nullptr && older != nullptr && newer->gesture == older->gesture &&
          newer->layer == older->layer && newer->key == older->key;
@@ -173,6 +181,13 @@ struct Studio::Visitor {
   void operator()(const Probe& c) const {
     const ProbeResult result = probe(studio.frames_.renderer(), studio.state_.scene(), c);
     studio.send_(page, text_message(probe_json(result, c)));
+  }
+  void operator()(const AskSlice& c) const {
+    studio.slices_are_shown_ = true;
+    studio.send_(page, slice_message(studio.state_.scene(), c, studio.parallel_));
+  }
+  void operator()(const Locate& c) const {
+    studio.send_(page, text_message(located_json(studio.state_.scene(), c)));
   }
   void operator()(const DragHandle& c) const {
     studio.state_.set_clips(with_handle_dragged(studio.state_.scene(), c), c.gesture);
@@ -320,7 +335,7 @@ void Studio::run() {
       wakes_.wait(lock, [&] { return ended_ || has_work(); });
       if (ended_) return;
     }
-    work(endless);
+    work(slices_are_shown_ ? short_turn : endless);
   }
 }
 

@@ -122,6 +122,7 @@ class Studio {
   bool is_rendering_ = false;                 ///< whether a frame goes on
   bool stale_ = true;                         ///< whether the picture is not that of the scene
   bool failed_ = false;                       ///< whether there is no picture of the scene
+  bool slices_are_shown_ = false;             ///< True once a page asked for one
   std::map<PageId, std::uint64_t> answered_;  ///< last message of each page that was carried out
 
   std::mutex mutex_;  ///< of the following

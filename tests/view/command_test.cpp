@@ -72,6 +72,48 @@ TEST(ParseCommand, ReadsRangesOfHistograms) {
   }
 }
 
+TEST(ParseCommand, ReadsSlicesAndPositions) {
+  const auto slice = parsed<AskSlice>(
+      R"({"type": "slice", "axis": 1, "position": -2.5, "from": [0, 9], "to": [8, 1],
+      "columns": 640, "rows": 480, "layer": 2, "channel": 3})");
+  EXPECT_EQ(slice.plane.axis, 1);
+  EXPECT_EQ(slice.plane.position, -2.5);
+  EXPECT_EQ(slice.plane.from[1], 9);
+  EXPECT_EQ(slice.plane.to[1], 1);
+  EXPECT_EQ(slice.plane.columns, 640);
+  EXPECT_EQ(slice.layer, 2U);
+  EXPECT_EQ(slice.channel, 3);
+  EXPECT_EQ(parsed<Locate>(R"({"type": "locate", "position": [1, 2, 3]})").position.z, 3);
+  EXPECT_TRUE(parsed<Probe>(R"({"type": "probe", "x": 0, "y": 1, "picks": true})").picks);
+  EXPECT_FALSE(parsed<Probe>(R"({"type": "probe", "x": 0, "y": 1})").picks);
+}
+
+TEST(ParseCommand, RefusesWrongSlices) {
+  const auto slice = [](const char* key, const char* value) {
+    Json json = Json::parse(R"({"type": "slice", "axis": 1, "position": 0, "from": [0, 0],
+        "to": [1, 1], "columns": 4, "rows": 4})");
+    json[key] = Json::parse(value);
+    return json.dump();
+  };
+  EXPECT_FALSE(parsed<AskSlice>(slice("axis", "0")).layer);
+  expect_refused(slice("axis", "3"), "axis is 3");
+  expect_refused(slice("axis", "0.5"), "not a whole number");
+  expect_refused(slice("position", "null"), "position is not a number");
+  expect_refused(slice("position", "1e31"), "position is 1e+31");
+  expect_refused(slice("from", "[0]"), "from is not a list of 2 numbers");
+  expect_refused(slice("from", "[0, \"1\"]"), "from is not a list of 2 numbers");
+  expect_refused(slice("to", "[1e300, 1]"), "to is not a list of 2 numbers");
+  expect_refused(slice("to", "[0, 1]"), "to has a number of from");
+  expect_refused(slice("columns", "0"), "columns is 0");
+  expect_refused(slice("rows", "4097"), "rows is 4097");
+  expect_refused(slice("channel", "0"), "channel is not a member");
+  expect_refused(slice("layer", "-1"), "layer is -1");
+  expect_refused(slice("layer", "0"), "channel is missing");
+  expect_refused(R"({"type": "locate", "position": [1, 2]})", "3 numbers");
+  expect_refused(R"({"type": "locate", "position": {"x": 1}})", "3 numbers");
+  expect_refused(R"({"type": "probe", "x": 0, "y": 1, "picks": 1})", "neither true nor false");
+}
+
 TEST(ParseCommand, RefusesWhatIsNotAMessage) {
   expect_refused("", "not JSON");
   expect_refused("{", "not JSON");
