@@ -13,11 +13,9 @@ from viewer_process import Viewer
 
 try:
     import numpy as np
+    rng = np.random.default_rng(7)
 except ImportError:
-    print("skipped: NumPy is not installed")
-    sys.exit(77)
-
-rng = np.random.default_rng(7)
+    np = None
 
 
 def write_nifti(path, data, affine):
@@ -226,4 +224,7 @@ class Slices(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    if np is None:
+        print("skipped: NumPy is not installed")
+        sys.exit(77)
     unittest.main(verbosity=2)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {Connection} from './connection.js';
 import {FitProgress} from './fit_progress.js';
+import {FourViews} from './four_views.js';
 import {FunctionPanel} from './function_panel.js';
 import {LostPanel} from './lost_panel.js';
 import {OpenPanel} from './open_panel.js';
@@ -29,11 +30,13 @@ export class Viewer {
     new LostPanel(this);
     this.addMessages();
     this.addControls();
+    this.views = new FourViews(this);
+    this.panels.push(this.views);
   }
 
   /** The scene file's object of the selected layer, and what the program says of its data. */
   layer() { return this.scene.layers[this.selected]; }
-  facts(i = this.selected) { return this.layerFacts[i]; }
+  facts(i = this.selected) { return this.layerFacts?.[i]; }
   nameOf(i) {
     const layer = this.scene.layers[i];
     if (!layer.name && layer.channels) return layer.channels.map(({name}) => name).join(' + ');
@@ -102,6 +105,7 @@ export class Viewer {
     this.layerFacts = undefined;
     this.clearProbe();
     this.functionPanel.forget();
+    this.views.forget();
     this.stale = true;
     this.picture.resize();
   }
@@ -111,7 +115,7 @@ export class Viewer {
     const first = this.scene === null;
     const channels = JSON.stringify(this.layerFacts?.map((facts) => facts.channels));
     Object.assign(this, {scene, layerFacts: layers, box, presets, savable: message.savable,
-      temporary: message.temporary});
+      temporary: message.temporary, anatomical: message.anatomical});
     document.body.dataset.scene = 'shown';
     if (channels !== JSON.stringify(layers.map((facts) => facts.channels))) {
       this.functionPanel.forget();

@@ -3,7 +3,7 @@ import {makeSvg, shortNumber} from './elements.js';
 
 const axisLength = 34;
 const margin = 56;
-const axisColors = ['#ff8a80', '#a5e887', '#8ab8ff'];
+export const axisColors = ['#ff8a80', '#a5e887', '#8ab8ff'];
 
 /**
  * Draws axes, scale bar, clips and the probe over a picture.
@@ -12,14 +12,15 @@ const axisColors = ['#ff8a80', '#a5e887', '#8ab8ff'];
  * @param {number} scale CSS pixels of a pixel of the picture
  * @param {?{x: number, y: number}} probed
  * @param {function(number, string, PointerEvent): void} dragHandle
+ * @param {?function(number, number): SVGElement[]} marks more shapes for a width and a height
  */
-export function drawOverlay(svg, frame, scale, probed, dragHandle) {
+export function drawOverlay(svg, frame, scale, probed, dragHandle, marks) {
   const width = frame.width * scale, height = frame.height * scale;
   svg.setAttribute('viewBox', `0 0 ${width} ${height}`);
   const {axes, clips} = frame.overlay;
   svg.replaceChildren(
     ...clips.flatMap((clip, i) => clipShapes(clip, i, width, height, dragHandle)),
-    ...shapesOf(axisMarks(axes, height)), ...shapesOf(scaleMark(frame.overlay, width, height)));
+    ...(marks?.(width, height) ?? []), ...shapesOf(axisMarks(axes, height)), ...shapesOf(scaleMark(frame.overlay, width, height)));
   if (probed) {
     svg.append(makeSvg('circle', {class: 'probe', r: 5, cx: probed.x * width,
       cy: probed.y * height}));
@@ -70,7 +71,8 @@ export function scaleMark(overlay, width, height) {
   };
 }
 
-function shapesOf({lines, texts}) {
+/** Shapes of the marks that axisMarks() and scaleMark() return. */
+export function shapesOf({lines, texts}) {
   return [
     ...lines.map(({x1, y1, x2, y2, color}) => {
       const line = makeSvg('line', {x1, y1, x2, y2});

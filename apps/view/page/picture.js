@@ -15,6 +15,8 @@ export class Picture {
     this.coarse = new OffscreenCanvas(1, 1);
     this.frame = null;
     this.probed = null;
+    /** More shapes over the picture, and who is told of clicks on it; both may be missing. */
+    this.marks = this.onclick = null;
     new ResizeObserver(() => this.resize()).observe(this.stage);
     matchMedia(`(resolution: ${devicePixelRatio}dppx)`)
       .addEventListener('change', () => this.resize());
@@ -29,6 +31,7 @@ export class Picture {
     const pixels = (length) => Math.max(1, Math.min(8192, Math.round(length * devicePixelRatio)));
     this.connection.sendSoon('size', {type: 'size', width: pixels(width), height: pixels(height)});
     this.placeCanvases();
+    this.drawOverlay();
   }
 
   /** The picture fills the stage, unless another page asked for another shape. */
@@ -81,9 +84,9 @@ export class Picture {
   }
 
   drawOverlay() {
-    if (!this.frame) return;
+    if (!this.frame || !(this.scale > 0)) return;  // a stage that is hidden has no size
     drawOverlay(this.overlay, this.frame, this.scale, this.probed, (clip, handle, event) =>
-      this.dragHandle(clip, handle, event));
+      this.dragHandle(clip, handle, event), this.marks);
   }
 
   /** @param {?{x: number, y: number}} at fractions of the picture */
@@ -132,8 +135,14 @@ export class Picture {
         else if (event.altKey) this.roll(-180 * x);
         else this.move('turn', x, y);
         pointers.set(next.pointerId, next);
-      }, () => {
+      }, (last) => {
+        const isAlone = pointers.size === 1 && event.button === 0;
         pointers.delete(event.pointerId);
+        // What moves less is a click.
+        const far = Math.hypot(last.clientX - event.clientX, last.clientY - event.clientY);
+        const at = this.positionOf(last);
+        const isOnIt = at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1;
+        if (isAlone && far < 4 && isOnIt && last.type === 'pointerup') this.onclick?.(at);
         this.dragging = pointers.size > 0;
       });
     });
