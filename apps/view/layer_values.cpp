@@ -163,7 +163,7 @@ void LayerValues::fill(int channel, const SlicePlane& plane, const ParallelFor& 
                        std::span<float> values) const {
   std::ranges::fill(values, no_value);
   if (mesh_ != nullptr) {
-    fill_mesh(channel, plane, values);
+    fill_mesh(channel, plane, parallel, values);
   } else if (!channels_.empty()) {
     fill_grid(channel, plane, parallel, values);
   }
@@ -174,22 +174,23 @@ void LayerValues::fill_grid(int channel, const SlicePlane& plane, const Parallel
   const Volume& volume = *channels_[static_cast<std::size_t>(channel)];
   volume.visit([&](const auto& grid) {
     parallel_or_serial(parallel)(plane.rows, [&](int first, int last) {
-      auto value = values.begin() + std::ptrdiff_t{first} * plane.columns;
       for (int row = first; row < last; ++row) {
-        for (int column = 0; column < plane.columns; ++column, ++value) {
+        for (int column = 0; column < plane.columns; ++column) {
           const auto position = in_grid(plane.at(column, row));
           if (!position || is_vacuum(*position)) continue;
-          *value = static_cast<float>(sample_value<double>(grid, *position));
+          values[plane.index(column, row)] =
+              static_cast<float>(sample_value<double>(grid, *position));
         }
       }
     });
   });
 }
 
-/// Writes each tetrahedron that the plane cuts.
-void LayerValues::fill_mesh(int channel, const SlicePlane& plane, std::span<float> values) const {
+/// Writes each tetrahedron that the plane cuts. Threads share the rows.
+void LayerValues::fill_mesh(int channel, const SlicePlane& plane, const ParallelFor& parallel,
+                            std::span<float> values) const {
   const int u = plane.column_axis(), v = plane.row_axis();
-  for (std::size_t t = 0; t < mesh_->mesh().tetrahedra().size(); ++t) {
+  const auto fill_rows = [&](int first, int last, std::size_t t) {
     std::array<Vec3<double>, 4> corners = corners_of(mesh_->mesh(), t);
     for (Vec3<double>& corner : corners) corner = world_from_data_.point(corner);
     Vec3<double> lower = corners[0], upper = corners[0];
@@ -199,22 +200,24 @@ void LayerValues::fill_mesh(int channel, const SlicePlane& plane, std::span<floa
         upper[a] = std::max(upper[a], corner[a]);
       }
     }
-    if (!(plane.position >= lower[plane.axis] && plane.position <= upper[plane.axis])) continue;
+    if (!(plane.position >= lower[plane.axis] && plane.position <= upper[plane.axis])) return;
     const auto [left, right] =
         middles_within(plane.from[0], plane.to[0], plane.columns, lower[u], upper[u]);
     const auto [top, bottom] =
         middles_within(plane.from[1], plane.to[1], plane.rows, lower[v], upper[v]);
-    if (left >= right || top >= bottom || is_vacuum_in(*mesh_, t)) continue;
-    for (int row = top; row < bottom; ++row) {
+    if (left >= right || top >= bottom || is_vacuum_in(*mesh_, t)) return;
+    for (int row = std::max(top, first); row < std::min(bottom, last); ++row) {
       for (int column = left; column < right; ++column) {
         const auto weights = corner_weights(relative_to(corners, plane.at(column, row)));
         if (!weights) continue;
-        values[static_cast<std::size_t>(row) * static_cast<std::size_t>(plane.columns) +
-               static_cast<std::size_t>(column)] =
+        values[plane.index(column, row)] =
             static_cast<float>(value_in(*mesh_, channel, t, *weights));
       }
     }
-  }
+  };
+  parallel_or_serial(parallel)(plane.rows, [&](int first, int last) {
+    for (std::size_t t = 0; t < mesh_->mesh().tetrahedra().size(); ++t) fill_rows(first, last, t);
+  });
 }
 
 std::optional<std::int32_t> LayerValues::label_at(const Vec3<double>& world) const {
@@ -224,21 +227,15 @@ std::optional<std::int32_t> LayerValues::label_at(const Vec3<double>& world) con
   return std::isnan(label) ? std::nullopt : std::optional(static_cast<std::int32_t>(label));
 }
 
-void LayerValues::fill_labels(const SlicePlane& plane,
-                              const std::function<std::uint16_t(std::int32_t)>& number_of,
-                              std::span<std::uint16_t> numbers) const {
-  std::optional<std::int32_t> last;
-  std::uint16_t number = 0;
-  auto written = numbers.begin();
-  for (int row = 0; row < plane.rows; ++row) {
-    for (int column = 0; column < plane.columns; ++column, ++written) {
-      const std::optional<std::int32_t> label = label_at(plane.at(column, row));
-      if (!label) continue;
-      if (label != last) number = number_of(*label);
-      last = label;
-      if (number != 0) *written = number;
+void LayerValues::fill_labels(const SlicePlane& plane, const ParallelFor& parallel,
+                              std::span<std::int32_t> labels) const {
+  parallel_or_serial(parallel)(plane.rows, [&](int first, int last) {
+    for (int row = first; row < last; ++row) {
+      for (int column = 0; column < plane.columns; ++column) {
+        labels[plane.index(column, row)] = label_at(plane.at(column, row)).value_or(no_label);
+      }
     }
-  }
+  });
 }
 
 std::optional<std::array<int, 3>> LayerValues::voxel_at(const Vec3<double>& world) const {

@@ -3,7 +3,7 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -26,6 +26,10 @@ struct SlicePlane {
   int row_axis() const noexcept { return axis == 2 ? 1 : 2; }
   std::size_t count() const noexcept {
     return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  }
+  std::size_t index(int column, int row) const noexcept {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(column);
   }
   /// Returns the position of a value in the scene's world.
   Vec3<double> at(int column, int row) const noexcept;
@@ -53,11 +57,10 @@ class LayerValues {
   /// Returns the label of the nearest value along each axis; none outside of the data, where that
   /// value is NaN, and where there are no labels.
   std::optional<std::int32_t> label_at(const Vec3<double>& world) const;
-  /// Writes the numbers that `number_of` gives the labels, row by row; where there is no label, or
-  /// its number is 0, what was there stays.
-  void fill_labels(const SlicePlane& plane,
-                   const std::function<std::uint16_t(std::int32_t)>& number_of,
-                   std::span<std::uint16_t> numbers) const;
+  /// Writes the labels, row by row, and `no_label` where there is none.
+  void fill_labels(const SlicePlane& plane, const ParallelFor& parallel,
+                   std::span<std::int32_t> labels) const;
+  static constexpr std::int32_t no_label = std::numeric_limits<std::int32_t>::min();
 
   /// Returns the indices of the nearest value along each axis of the grid; none outside of it and
   /// of a mesh.
@@ -69,7 +72,8 @@ class LayerValues {
   bool is_vacuum(const Vec3<double>& in_grid) const;
   void fill_grid(int channel, const SlicePlane& plane, const ParallelFor& parallel,
                  std::span<float> values) const;
-  void fill_mesh(int channel, const SlicePlane& plane, std::span<float> values) const;
+  void fill_mesh(int channel, const SlicePlane& plane, const ParallelFor& parallel,
+                 std::span<float> values) const;
 
   std::vector<const Volume*> channels_;  ///< Volumes of a grid's channels
   const MeshChannels* mesh_ = nullptr;

@@ -63,7 +63,7 @@ Json label_json(const SliceLabel& label) {
 }
 
 void add_labels(const Layer& layer, std::size_t index, const LayerValues& values,
-                const SlicePlane& plane, SlicePicture& picture) {
+                const SlicePlane& plane, const ParallelFor& parallel, SlicePicture& picture) {
   if (picture.labels.empty()) picture.labels.resize(plane.count());
   const LabelLooks looks(layer);
   std::unordered_map<std::int32_t, std::uint16_t> numbers;
@@ -78,7 +78,15 @@ void add_labels(const Layer& layer, std::size_t index, const LayerValues& values
     }
     return numbers[label] = number;
   };
-  values.fill_labels(plane, number_of, picture.labels);
+  std::vector<std::int32_t> labels(plane.count());
+  values.fill_labels(plane, parallel, labels);
+  std::int32_t last = LayerValues::no_label;
+  std::uint16_t number = 0;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] == LayerValues::no_label) continue;
+    if (labels[i] != last) number = number_of(last = labels[i]);
+    if (number != 0) picture.labels[i] = number;
+  }
 }
 
 template <class Value>
@@ -106,7 +114,7 @@ SlicePicture make_slice(const Scene& scene, const AskSlice& ask, const ParallelF
   for (std::size_t i = 0; i < scene.layers.size(); ++i) {
     if (!scene.layers[i].visible) continue;
     const LayerValues values(scene.layers[i]);
-    if (values.has_labels()) add_labels(scene.layers[i], i, values, ask.plane, picture);
+    if (values.has_labels()) add_labels(scene.layers[i], i, values, ask.plane, parallel, picture);
   }
   return picture;
 }

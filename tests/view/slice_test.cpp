@@ -148,6 +148,12 @@ TEST(Slice, HasTheValuesOfATrilinearFunction) {
   }
 }
 
+TEST(Slice, HasValuesInTheMiddlesOfItsPixels) {
+  const SlicePlane plane{1, 7, {0, 10}, {8, -2}, 4, 3};
+  EXPECT_EQ(plane.at(0, 0), (Vec3<double>{1, 7, 8}));
+  EXPECT_EQ(plane.at(3, 2), (Vec3<double>{7, 7, 0}));
+}
+
 TEST(Slice, TellsTheVoxelAtEachValue) {
   for (const Case& wanted : cases()) {
     SCOPED_TRACE(wanted.name);
@@ -275,6 +281,36 @@ TEST(Slice, HasTheLabelOfTheNearestValue) {
   EXPECT_EQ(located["labels"][0]["color"], "#ff0000");
   EXPECT_EQ(located["voxels"][0]["index"], Json({1, 1, 1}));
   EXPECT_TRUE(located["values"].empty());
+}
+
+TEST(Slice, HasTheLabelsOfAMask) {
+  Volume::Description grid;
+  grid.dimensions = {4, 2, 2};
+  grid.placement.origin = {10, 0, 0};
+  std::vector<std::uint8_t> labels;
+  for (int i = 0; i < 4; ++i) labels.insert(labels.end(), {0, 3, 4, 4});
+  const auto function = std::make_shared<const TransferFunction>(
+      std::vector<TransferFunction::Point>{{0, 1, {1, 1, 1}}});
+  const auto mask = std::make_shared<const LabelMask>(
+      std::make_shared<const LabelVolume>(std::make_shared<const Volume>(grid, VolumeData(labels))),
+      std::vector<LabelMask::Choice>{{0, function}, {3, function}});
+  Scene scene;
+  scene.layers = {layer_of(volume_of(grid))};
+  std::get<VolumeContent>(scene.layers[0].content).mask = mask;
+  AskSlice ask;
+  ask.plane = {2, 0.5, {10, 0}, {13, 1}, 30, 1};
+  ask.layer = 0;
+  const SlicePicture picture = make_slice(scene, ask, {});
+  // 3 alone has a function of its own, and 0 is what lies around labels.
+  ASSERT_EQ(picture.shown.size(), 1U);
+  EXPECT_EQ(picture.shown[0].label, 3);
+  for (int i = 0; i < 30; ++i) {
+    EXPECT_EQ(picture.labels[static_cast<std::size_t>(i)], i >= 5 && i < 15 ? 1 : 0) << i;
+    EXPECT_FALSE(std::isnan(picture.values[static_cast<std::size_t>(i)]));
+  }
+  EXPECT_EQ(located_json(scene, {{11, 0.5, 0.5}})["labels"][0]["label"], 3);
+  scene.layers[0].visible = false;
+  EXPECT_TRUE(make_slice(scene, ask, {}).labels.empty());
 }
 
 TEST(Slice, RefusesWhatIsNotThere) {

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-import {button, choice, gestureIsActive, labelled, make, makeSvg, numberInput, replaceKeepingFocus,
-  shortNumber, slider} from './elements.js';
+import {button, choice, gestureIsActive, labelled, labelledAfter, make, makeSvg, numberInput,
+  replaceKeepingFocus, shortNumber, slider} from './elements.js';
 import {Measures} from './measures.js';
 import {axisColors} from './overlay.js';
 import {projected, sliceName, stepped} from './slice_geometry.js';
 import {SliceView, withUnit} from './slice_view.js';
 
 const axisNames = ['x', 'y', 'z'];
+/** Levels and windows in Hounsfield units, of data that have such numbers. */
+const ctWindows = {'brain': [40, 80], 'soft tissue': [50, 400], 'lung': [-600, 1500],
+  'bone': [500, 2000]};
+const hasHounsfieldUnits = ([least, most]) => least <= -500 && most >= 500 && most < 32768;
 /** Where the layout is kept. */
 const key = 'pellucid.views';
 const isNarrow = () => matchMedia('(max-width: 820px)').matches;
@@ -26,6 +30,7 @@ export class FourViews {
     this.channel = null;
     this.tool = 'crosshair';
     this.labelShare = 0.4;
+    this.hasLines = true;
     /** Lower and upper end of the grey window of each channel. @type {Map<string, number[]>} */
     this.windows = new Map();
     this.asked = new Set();
@@ -85,6 +90,11 @@ export class FourViews {
   toggle() {
     this.show(this.isOn() ? 'volume' : 'four', this.shown);
     if (this.isOn()) this.update();
+  }
+
+  /** Shows a slice alone, or all views again. */
+  enlarge(axis) {
+    this.show('four', this.shown === 'all' ? String(axis) : 'all');
   }
 
   makeBar() {
@@ -282,11 +292,13 @@ export class FourViews {
   /** @param {Object} located a message "located" */
   tell({position, values, labels, voxels}) {
     const {viewer} = this;
+    if (!viewer.scene) return;
     const isOne = viewer.scene.layers.length === 1;
     const nameOf = (i) => (isOne ? '' : `${viewer.nameOf(i)} `);
     const layer = this.channel?.layer ?? 0;
     const voxel = voxels.find((one) => one.layer === layer) ?? voxels[0];
     const parts = [`(${position.map(shortNumber).join(', ')})${this.unit ? ' ' + this.unit : ''}`];
+    if (values.length + labels.length === 0) parts.push('outside of the data');
     if (voxel) parts.push(`voxel ${voxel.index.join(', ')}`);
     parts.push(...values.map(({layer: i, channel, value}) =>
       `${nameOf(i)}${channel} ${shortNumber(value)}`));
@@ -330,7 +342,7 @@ export class FourViews {
       return at && {x: at.x * width, y: at.y * height, isNear: true};
     };
     const {lower, upper} = this.viewer.box;
-    const lines = [0, 1, 2].flatMap((axis) => {
+    const lines = (this.hasLines ? [0, 1, 2] : []).flatMap((axis) => {
       const [from, to] = [lower, upper].map((end) =>
         place(this.crosshair.map((at, a) => (a === axis ? end[a] : at))));
       if (!from || !to) return [];
@@ -385,6 +397,7 @@ export class FourViews {
     }
     const [lower, upper] = this.windowOf();
     const level = (lower + upper) / 2, width = upper - lower;
+    const range = viewer.facts(this.channel.layer).ranges[this.channel.channel];
     const set = (nextLevel, nextWidth) =>
       this.setWindow(nextLevel - nextWidth / 2, nextLevel + nextWidth / 2);
     rows.push(make('div', {class: 'row'},
@@ -394,13 +407,21 @@ export class FourViews {
       button('Auto', () => {
         this.windows.delete(this.channelKey(this.channel));
         this.askWindow();
-      }, {title: 'The middle of the values', 'aria-label': 'Window of the middle of the values'})));
+      }, {title: 'The middle of the values', 'aria-label': 'Window of the middle of the values'}),
+      ...(hasHounsfieldUnits(range) ? [choice('', [['', 'CT…'], ...Object.keys(ctWindows)
+        .map((name) => [name, name])], 'Window of CT', (name) => {
+        if (name) set(...ctWindows[name]);
+      })] : [])));
     return rows;
   }
 
   positionRow() {
     return make('div', {class: 'row'}, 'Crosshair', ...axisNames.map((name, a) =>
       numberInput(this.crosshair[a], `${name} of the crosshair`,
-        (next) => this.moveTo(a, next), {'data-position': a})), this.unit);
+        (next) => this.moveTo(a, next), {'data-position': a})), this.unit,
+    labelledAfter(make('input', {type: 'checkbox', checked: this.hasLines, onchange: (event) => {
+      this.hasLines = event.target.checked;
+      this.drawMarks();
+    }}), 'Lines'));
   }
 }

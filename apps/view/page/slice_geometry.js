@@ -50,7 +50,7 @@ export function distance(from, to) {
 /** @returns {number} degrees between the lines from the second point to the others */
 export function angle([first, vertex, last]) {
   const a = first.map((at, i) => at - vertex[i]), b = last.map((at, i) => at - vertex[i]);
-  const cross = [0, 1, 2].map((i) => a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
+  const cross = [[1, 2], [2, 0], [0, 1]].map(([i, j]) => a[i] * b[j] - a[j] * b[i]);
   const dot = a.reduce((sum, at, i) => sum + at * b[i], 0);
   return Math.atan2(Math.hypot(...cross), dot) * 180 / Math.PI;
 }

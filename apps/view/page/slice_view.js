@@ -8,8 +8,8 @@ const arrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowD
 const clickReach = 4;
 /** Pixels between the crossing of the lines and their ends, so that the voxel is seen. */
 const gap = 7;
-/** Pixels of a wheel's notch, at least. */
-const notch = 40;
+/** Pixels of an event that is a wheel's notch by itself, at least; smaller ones are added up. */
+const notch = 40, sumOfNotch = 100;
 const largestEdge = 4096;
 
 function styled(line, color) {
@@ -236,7 +236,8 @@ export class SliceView {
     const right = Math.min(width, Math.max(0, at.x + gap)), left = Math.min(width, at.x - gap);
     const below = Math.min(height, Math.max(0, at.y + gap)), above = Math.min(height, at.y - gap);
     // A line has the color of the axis that its own slice crosses.
-    const lines = [...line(0, at.y, Math.max(0, left), at.y, v), ...line(right, at.y, width, at.y, v),
+    const lines = !views.hasLines ? [] : [
+      ...line(0, at.y, Math.max(0, left), at.y, v), ...line(right, at.y, width, at.y, v),
       ...line(at.x, 0, at.x, Math.max(0, above), u), ...line(at.x, below, at.x, height, u)];
     const text = (x, y, content, anchor = 'middle') =>
       makeSvg('text', {x, y, 'text-anchor': anchor}, content);
@@ -310,6 +311,9 @@ export class SliceView {
         views.measures.hover(this.worldOf(event));
       }
     });
+    canvas.addEventListener('dblclick', () => {
+      if (views.tool === 'crosshair') views.enlarge(this.axis);
+    });
     let turned = 0;
     canvas.addEventListener('wheel', (event) => {
       event.preventDefault();
@@ -319,9 +323,8 @@ export class SliceView {
         this.zoom(1.0015 ** -amount, event.clientX - box.left, event.clientY - box.top);
         return;
       }
-      // A notch is an event of a wheel, and several of a pad.
       turned = turned * amount < 0 ? amount : turned + amount;
-      if (Math.abs(turned) < notch) return;
+      if (Math.abs(amount) < notch && Math.abs(turned) < sumOfNotch) return;
       views.step(this.axis, turned < 0 ? 1 : -1);
       turned = 0;
     }, {passive: false});
