@@ -162,6 +162,18 @@ class Animate(ProgramTest):
             alpha = pixel(self.picture(f"f/{i}.png"), 4, 4)[3] / 255
             self.assertAlmostEqual(alpha, 1 - math.exp(-0.3 * value), delta=0.0045)
 
+    def test_values_between_steps(self):
+        self.write("run.vti", steps([0, 2, 3], [[1], [5], [2]]))
+        function = {"points": [{"value": 0, "extinction": 0, "color": [1, 1, 1]},
+                               {"value": 8, "extinction": 0.8, "color": [1, 1, 1]}]}
+        self.write("tf.json", json.dumps(function).encode())
+        self.succeed("animate", "run.vti", "--tf", "tf.json", "--size", "9", "--view", "front",
+                     "--background", "transparent", "--times", "0:3", "--frames", "4",
+                     "--time-between", "linear", "-o", "f/%d.png")
+        for i, value in enumerate([1, 3, 5, 2]):
+            alpha = pixel(self.picture(f"f/{i}.png"), 4, 4)[3] / 255
+            self.assertAlmostEqual(alpha, 1 - math.exp(-0.3 * value), delta=0.0045)
+
     def test_one_function_for_all_steps(self):
         self.write("run.vti", steps(TIMES, [[value + k / 63 for k in range(64)]
                                             for value in (1, 2, 8, 4)]))

@@ -397,6 +397,7 @@ Command add_animate(CommandLine& app) {
       "animate", "Render a film: a turntable, steps in time, or a scene's keyframes");
   const auto arguments = std::make_shared<AnimateArguments>();
   arguments->scene.suggests_functions = true;
+  arguments->scene.mesh.has_times = true;
   command.add_option(
       "INPUT", arguments->scene.input,
       input_help() + ", " + mesh_input_help() + ", SCENE.json or builtin:NAME[:POINTS]");

@@ -24,6 +24,7 @@ struct MeshOptions {
   std::string q;
   std::optional<double> time;
   std::string time_between;         ///< "nearest", "linear"; empty: not given
+  bool has_times = false;           ///< True if times of data come from a film.
   std::vector<std::string> arrays;  ///< [NAME=]ARRAY[:C]
   std::vector<Option*> given;       ///< all of them, to ask which were used
 
@@ -35,7 +36,7 @@ struct MeshOptions {
   template <class Options>
   void set_time(Options& options) const {
     options.time = time;
-    options.time_between = between_steps(time_between, time.has_value());
+    options.time_between = between_steps(time_between, time.has_value() || has_times);
   }
   /// The same of `--solution` alone: volume files have arrays and times too.
   void refuse_q(const std::string& what) const;

@@ -24,7 +24,8 @@ class SceneTimes {
   /// Returns those of one layer likewise.
   std::vector<double> of(std::size_t layer) const;
   /// Has such data read at a moment: at the step that is nearest to it (of two as near the
-  /// earlier). `description` has the sources of the one that the times are of.
+  /// earlier), or between two where their source has TimeBetween::linear. `description` has the
+  /// sources of the one that the times are of.
   void set(SceneDescription& description, double moment) const;
 
  private:

@@ -10,16 +10,15 @@
 namespace pellucid {
 namespace {
 
-/// Calls visit(source, time) with each source of a layer that is used, and its own time.
+/// Calls visit(source, options) with each source of a layer that is used, and its options.
 template <class Visit>
 void visit_timed(LayerDescription& layer, const Visit& visit) {
   visit_sources(layer, [&](FieldSource& field) {
     const bool is_used =
         &field != &layer.field || !(layer.mesh || layer.labels || !layer.channels.empty());
-    if (is_used && has_source(field) && field.builtin.empty()) visit(field, field.options.time);
+    if (is_used && has_source(field) && field.builtin.empty()) visit(field, field.options);
   });
-  if (layer.mesh && layer.mesh->file != array_in_memory)
-    visit(*layer.mesh, layer.mesh->options.time);
+  if (layer.mesh && layer.mesh->file != array_in_memory) visit(*layer.mesh, layer.mesh->options);
 }
 
 /// Returns the time that is nearest to a moment, of two as near the earlier.
@@ -39,8 +38,8 @@ SceneTimes::SceneTimes(const SceneDescription& description) {
   SceneDescription scene = description;
   times_.resize(scene.layers.size());
   for (std::size_t i = 0; i < scene.layers.size(); ++i) {
-    visit_timed(scene.layers[i], [&](const auto& source, const std::optional<double>& time) {
-      times_[i].push_back(time ? std::vector<double>() : source_times(source));
+    visit_timed(scene.layers[i], [&](const auto& source, const auto& options) {
+      times_[i].push_back(options.time ? std::vector<double>() : source_times(source));
       all_.insert(all_.end(), times_[i].back().begin(), times_[i].back().end());
     });
   }
@@ -57,8 +56,12 @@ std::vector<double> SceneTimes::of(std::size_t layer) const {
 void SceneTimes::set(SceneDescription& description, double moment) const {
   for (std::size_t i = 0; i < times_.size(); ++i) {
     auto times = times_[i].begin();
-    visit_timed(description.layers[i], [&](auto&, std::optional<double>& time) {
-      if (!times->empty()) time = nearest(*times, moment);
+    visit_timed(description.layers[i], [&](auto&, auto& options) {
+      if (!times->empty()) {
+        options.time = options.time_between == TimeBetween::linear
+                           ? std::clamp(moment, times->front(), times->back())
+                           : nearest(*times, moment);
+      }
       ++times;
     });
   }

@@ -175,7 +175,6 @@ void read_time(const Node& source, std::optional<double>& time, TimeBetween& bet
   if (const auto node = source.find("time")) time = node->number();
   const auto node = source.find("time_between");
   if (!node) return;
-  if (!time) node->fail("makes no sense without \"time\"; give one");
   between = node->one_of({"nearest", "linear"}) == 1 ? TimeBetween::linear : TimeBetween::nearest;
 }
 

@@ -268,8 +268,7 @@ std::string lines_text(const Part& part, const std::string& indent) {
 }
 
 void add_time(const std::optional<double>& time, TimeBetween between, Members& members) {
-  if (!time) return;
-  members.add("time", number(*time, "the time"));
+  if (time) members.add("time", number(*time, "the time"));
   if (between == TimeBetween::linear) members.add("time_between", "\"linear\"");
 }
 
