@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "time_steps.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include "pellucid/scene/error.h"
 
@@ -37,6 +39,14 @@ std::string step_note(const std::vector<double>& times, std::size_t step, double
   return "step " + std::to_string(step + 1) + " of " + std::to_string(times.size()) +
          " is read, time " + written(times[step]) + (unit.empty() ? "" : " " + unit) +
          (times[step] == wanted ? "" : " (nearest to " + written(wanted) + ")");
+}
+
+std::vector<double> ascending_times(std::vector<double> times) {
+  std::erase_if(times, [](double time) { return std::isnan(time); });
+  std::ranges::sort(times);
+  const auto repeated = std::ranges::unique(times);
+  times.erase(repeated.begin(), repeated.end());
+  return times;
 }
 
 std::optional<MomentBetween> moment_between(const std::vector<double>& times, double time) {

@@ -23,6 +23,9 @@ std::string step_note(const std::vector<double>& times, std::size_t step, double
 /// Returns the times of steps that follow each other at one distance.
 std::vector<double> even_times(std::size_t count, double first, double step);
 
+/// Returns times as they go on, each once, without those that are missing (NaN).
+std::vector<double> ascending_times(std::vector<double> times);
+
 /// A time between two steps, which are next to each other.
 struct MomentBetween {
   double before = 0, after = 0;

@@ -464,7 +464,6 @@ MeshBlocks read_vtk_hdf(const std::filesystem::path& path, const MeshReadOptions
   if (!times.empty()) {
     mesh.file.time = times[step];
     mesh.file.times = times;
-    std::ranges::sort(mesh.file.times);
   }
   try {
     Reader(path, contents, step).read(mesh);

@@ -184,6 +184,7 @@ MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& opt
   };
   try {
     MeshFile file = join_blocks(read_blocks(path, options), path.string());
+    file.times = ascending_times(std::move(file.times));
     for (const std::string& note : file.notes) {
       if (options.note) options.note(note);
     }

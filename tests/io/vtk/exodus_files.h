@@ -28,7 +28,8 @@ struct SmallExodus {
   std::vector<std::string> nodal{"T"};
   std::vector<std::string> of_elements{};
   int steps = 1;
-  int written_steps = 1;  ///< those behind are left as NetCDF fills them
+  int written_steps = 1;             ///< those behind are left as NetCDF fills them
+  std::vector<double> step_times{};  ///< times of the steps; empty: 0, 0.5, 1 and so on
   bool has_last_time = true;
   bool in_floats = false;
   int last_corner = 8;  ///< of the hexahedron's nodes 1 to 8, the last one
@@ -112,7 +113,7 @@ struct SmallExodus {
       ++list;
     }
     for (std::size_t s = 0; s < static_cast<std::size_t>(steps); ++s) {
-      const double seconds = 0.5 * static_cast<double>(s);
+      const double seconds = step_times.empty() ? 0.5 * static_cast<double>(s) : step_times[s];
       const bool is_last = s + 1 == static_cast<std::size_t>(steps);
       if (has_last_time || !is_last) nc_put_var1_double(file, times, &s, &seconds);
       for (std::size_t v = 0; v < values.size(); ++v) {

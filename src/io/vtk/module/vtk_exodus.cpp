@@ -244,6 +244,13 @@ vtkSmartPointer<vtkExodusIIReader> open_exodus(const std::filesystem::path& path
   return reader;
 }
 
+/// Runs a reader at the step that it has been told. Throws Error where VTK says one.
+void update_whole(vtkExodusIIReader& reader, const VtkMessages& messages) {
+  reader.Update();
+  messages.check();
+  if (reader.GetErrorCode() != 0) throw Error("the file is cut off or damaged");
+}
+
 /// Returns the times without those that were never written.
 std::vector<double> known_times(const std::vector<double>& times) {
   std::vector<double> known;
@@ -282,10 +289,16 @@ void read_exodus(const std::filesystem::path& path, const MeshReadOptions& optio
   file.check_corners();
   if (!times.empty()) {
     const double wanted = known[nearest_step(known, options.time)];
-    const auto step = std::ranges::find(times, wanted) - times.begin();
-    leave_out(file.without_values(static_cast<int>(step) + 1), *reader, mesh.file);
+    const auto step = static_cast<int>(std::ranges::find(times, wanted) - times.begin());
+    leave_out(file.without_values(step + 1), *reader, mesh.file);
+    // By its number: VTK looks for a time among ascending ones.
+    reader->SetTimeStep(step);
+    mesh.file.times = known;
+    mesh.file.time = wanted;
+  } else {
+    refuse_time(options);
   }
-  update(*reader, options, known, messages, mesh.file);
+  update_whole(*reader, messages);
   gather(*reader->GetOutput(), mesh);
   std::vector<std::string> names;
   const std::size_t unwritten = remove_fill(mesh, names);
@@ -295,7 +308,7 @@ void read_exodus(const std::filesystem::path& path, const MeshReadOptions& optio
     reader->SetApplyDisplacements(0);
     mesh.blocks.clear();
     mesh.cells = mesh.file.flat_cells = mesh.file.ghost_cells = mesh.file.trimmed_cells = 0;
-    update(*reader, options, known, messages, mesh.file);
+    update_whole(*reader, messages);
     gather(*reader->GetOutput(), mesh);
     remove_fill(mesh, names);
   }
