@@ -5,6 +5,7 @@
 
 #include "axes/grid_axes.h"
 #include "axes/positions_beside.h"
+#include "meshes/mesh_format.h"
 #include "pellucid/io/color_bar.h"
 #include "pellucid/io/figure.h"
 #include "pellucid/io/image_files.h"
@@ -36,6 +37,10 @@ std::string mesh_extensions() {
 
 LoadedMesh load_mesh(const MeshSource& source, const ParallelFor&) {
   throw left_out(source.file.string() + ": what reads meshes");
+}
+
+std::vector<double> mesh_times(const std::filesystem::path& path, const MeshReadOptions&) {
+  throw left_out(path.string() + ": what reads meshes");
 }
 
 // Transfer functions of other programs.

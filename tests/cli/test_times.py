@@ -310,7 +310,7 @@ class Times(ProgramTest):
         self.assertEqual(self.read("a.exr")[-300:], self.read("b.exr")[-300:])
         del scene["layers"][0]["field"]["time"]
         self.write("t.json", json.dumps(scene))
-        self.fail_with('time_between.*makes no sense without "time"', "render", "t.json", "-o",
+        self.fail_with('linear between steps in time needs a time', "render", "t.json", "-o",
                        "c.png")
         self.fail_with("--time-between needs a --time", "info", name, *linear, code=2)
         self.fail_with("--time-between", "info", name, "--time", "1", "--time-between", "cubic",

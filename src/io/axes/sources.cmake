@@ -2,6 +2,7 @@
 pellucid_io_sources(
   SOURCES
     array_axes.cpp
+    time_steps.cpp
   LATER
     axis_meaning.cpp
     axis_role.cpp
@@ -9,7 +10,6 @@ pellucid_io_sources(
     length_units.cpp
     position_names.cpp
     positions_beside.cpp
-    time_steps.cpp
     value_meaning.cpp
     variable_notes.cpp
   LOOPS

@@ -7,10 +7,10 @@ pellucid_io_sources(
     stored_numbers.cpp
     volume_format.cpp
     volume_source.cpp
+    volume_steps.cpp
   LATER
     unread_formats.cpp
     volume_axes.cpp
-    volume_steps.cpp
     write_volume.cpp
   WEB
     left_out_formats.cpp
