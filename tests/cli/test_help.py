@@ -49,7 +49,8 @@ class Help(ProgramTest):
             of_manual = options_of_manual(self.section(command))
             if command in READ_VOLUMES:
                 of_manual |= options_of_manual(self.introduction())
-            if command in ("view", "export", "animate"):  # which take those of render that say what is seen
+            if command in ("view", "export", "animate"):
+                # They take those of render that say what is seen.
                 of_manual |= options_of_manual(self.section("render")) & set(of_help)
             self.assertEqual(set(of_help) - {"--help"} - of_manual, set(),
                              f"{command}: not in docs/reference/command-line.md")

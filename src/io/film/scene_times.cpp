@@ -23,12 +23,13 @@ void visit_timed(LayerDescription& layer, const Visit& visit) {
 
 /// Returns the time that is nearest to a moment, of two as near the earlier.
 double nearest(const std::vector<double>& times, double moment) {
-  return *std::ranges::min_element(
-      times, {}, [&](double time) { return std::pair(std::abs(time - moment), time); });
+  return *std::min_element(times.begin(), times.end(), [&](double a, double b) {
+    return std::pair(std::abs(a - moment), a) < std::pair(std::abs(b - moment), b);
+  });
 }
 
 void sort_once(std::vector<double>& times) {
-  std::ranges::sort(times);
+  std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
 }
 

@@ -9,5 +9,7 @@ pellucid_io_sources(
     film_files.cpp
     video.cpp
   NOT_WEB
+    choose_for_steps.cpp
+    film.cpp
     film_files.cpp
     video.cpp)
