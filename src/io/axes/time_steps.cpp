@@ -44,8 +44,7 @@ std::string step_note(const std::vector<double>& times, std::size_t step, double
 std::vector<double> ascending_times(std::vector<double> times) {
   std::erase_if(times, [](double time) { return std::isnan(time); });
   std::ranges::sort(times);
-  const auto repeated = std::ranges::unique(times);
-  times.erase(repeated.begin(), repeated.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "axes/time_steps.h"
 #include "pellucid/io/film.h"
 #include "pellucid/io/time_steps.h"
 #include "pellucid/scene/error.h"
@@ -28,11 +29,6 @@ double nearest(const std::vector<double>& times, double moment) {
   });
 }
 
-void sort_once(std::vector<double>& times) {
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-}
-
 }  // namespace
 
 SceneTimes::SceneTimes(const SceneDescription& description) {
@@ -44,14 +40,13 @@ SceneTimes::SceneTimes(const SceneDescription& description) {
       all_.insert(all_.end(), times_[i].back().begin(), times_[i].back().end());
     });
   }
-  sort_once(all_);
+  all_ = ascending_times(std::move(all_));
 }
 
 std::vector<double> SceneTimes::of(std::size_t layer) const {
   std::vector<double> times;
   for (const auto& each : times_[layer]) times.insert(times.end(), each.begin(), each.end());
-  sort_once(times);
-  return times;
+  return ascending_times(std::move(times));
 }
 
 void SceneTimes::set(SceneDescription& description, double moment) const {
