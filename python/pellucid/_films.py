@@ -28,6 +28,9 @@ class _Frames:
     """The scenes of an animated scene, each made when it is asked for."""
 
     def __init__(self, scene: Scene, animation: Optional[dict]) -> None:
+        if not isinstance(scene, Scene):
+            raise Error(f"frames: expected a Scene, got {type(scene).__name__}; scene_of() makes "
+                        "one of data")
         self._scenes = _pellucid._FilmScenes(scene, _animation_text(scene, animation))
 
     def __len__(self) -> int:
@@ -99,11 +102,18 @@ def animate(scene: Union[Scene, Iterable[Any]], path: Union[str, os.PathLike],
 
     Raises Error if the path is no film, ffmpeg is not there, or a scene is not valid.
     """
+    if fps is not None and not (isinstance(fps, (int, float)) and 0 < fps <= 1000):
+        raise Error(f"fps: expected a number above 0, up to 1000, got {fps!r:.60}")
     files = _pellucid._FilmFiles(os.fspath(path))
     made, count, own_fps = _stamped(scene, animation)
     renderer = Renderer(threads)
-    index = 0
+    index, size = 0, None
     for each, made_from in made:
+        own = (each.width, each.height) if isinstance(each, Image) else tuple(each.size)
+        if files.is_video and own != (size or own):
+            raise Error(f"animate: frame {index + 1} has {own[0]} x {own[1]} pixels, but those "
+                        f"before it have {size[0]} x {size[1]}; give all of them one size")
+        size = own
         if not made_from or not files.has(index, made_from):
             image = each if isinstance(each, Image) else renderer.render(each)
             files.write(index, image, made_from)

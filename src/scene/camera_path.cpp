@@ -108,21 +108,30 @@ CameraPath::View CameraPath::mixed(const View& a, const View& b, double share) {
   return view;
 }
 
-/// Adds what the eye moves by turns, by the focal point and by nearing, and what zooms are like.
+/// Adds the turn in radians, how much nearer the eye comes and the picture zooms, as logarithms,
+/// and how far the focal point moves, in distances of the eye from it.
 double CameraPath::distance_between(const View& a, const View& b) {
   const double eye = std::exp((a.lengths[0] + b.lengths[0]) / 2);
   const double angle = 2 * std::acos(std::min(1.0, std::abs(dot(a.turn, b.turn))));
   double focus = 0;
   for (std::size_t i = 0; i < 3; ++i) focus = std::hypot(focus, a.focus[i] - b.focus[i]);
-  return eye * (angle + std::abs(a.lengths[0] - b.lengths[0]) +
-                std::abs(a.lengths[1] - b.lengths[1])) +
-         focus;
+  return angle + std::abs(a.lengths[0] - b.lengths[0]) + std::abs(a.lengths[1] - b.lengths[1]) +
+         focus / eye;
 }
 
 CameraPath::CameraPath(const std::vector<CameraKey>& keys, double seconds, bool is_closed) {
   if (keys.empty()) throw Error("camera path: has no camera");
   like_ = keys.front().camera;
   const bool is_timed = keys.front().at.has_value();
+  // The number of the view of each key, and its time.
+  std::vector<std::size_t> view_of_key;
+  std::vector<double> times;
+  const auto append = [&](View view) {
+    if (!views_.empty() && dot(view.turn, views_.back().turn) < 0) view.turn = negative(view.turn);
+    if (views_.empty() || distance_between(view, views_.back()) > 0) views_.push_back(view);
+    view_of_key.push_back(views_.size() - 1);
+  };
+  constexpr double least_gap = 1e-6;  // seconds
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const auto fail = [&](const std::string& what) {
       throw Error("camera path: camera " + std::to_string(i + 1) + " " + what);
@@ -136,45 +145,36 @@ CameraPath::CameraPath(const std::vector<CameraKey>& keys, double seconds, bool 
       fail("is at " + std::to_string(*key.at) + " s, outside of the film's " +
            std::to_string(seconds) + " s");
     }
-    if (is_timed && i > 0 && !(*key.at > *keys[i - 1].at)) {
+    if (is_timed && i > 0 && !(*key.at >= *keys[i - 1].at + least_gap)) {
       fail("is not later than the one before");
     }
     if (key.camera.projection != like_.projection) {
       fail("has another projection than the first; give all of them the same");
     }
-    View view = view_of(key.camera);
-    if (!views_.empty() && dot(view.turn, views_.back().turn) < 0) view.turn = negative(view.turn);
-    if (!is_timed && !views_.empty() && !(distance_between(view, views_.back()) > 0)) continue;
-    views_.push_back(view);
-    if (is_timed) knots_.push_back(*key.at);
+    append(view_of(key.camera));
+    if (is_timed) times.push_back(*key.at);
   }
-  const auto append_first = [&] {
-    View first = views_.front();
-    if (dot(first.turn, views_.back().turn) < 0) first.turn = negative(first.turn);
-    if (!is_timed && !(distance_between(first, views_.back()) > 0)) return;
-    if (is_timed && !(seconds > knots_.back())) {
-      throw Error(
-          "camera path: is closed, but its last camera is at the end; give it a time before");
-    }
-    views_.push_back(first);
-    if (is_timed) knots_.push_back(seconds);
-  };
-  if (is_closed && views_.size() > 1) append_first();
-  if (!is_timed) {
-    // Centripetal knots bend least between views that are unevenly far apart (Yuksel 2011).
-    knots_.push_back(0);
-    for (std::size_t i = 1; i < views_.size(); ++i) {
-      knots_.push_back(knots_.back() + std::sqrt(distance_between(views_[i], views_[i - 1])));
-    }
+  const bool returns = is_closed && views_.size() > 1;
+  if (is_closed && is_timed && keys.size() > 1 && !(seconds >= times.back() + least_gap)) {
+    throw Error("camera path: is closed, but its last camera is at the end; give it a time before");
+  }
+  if (returns) {
+    append(views_.front());
+    if (is_timed) times.push_back(seconds);
   }
   const std::size_t count = views_.size();
   if (count == 1) return;
+  // Centripetal knots bend least between views that are unevenly far apart (Yuksel 2011).
+  knots_ = {0};
+  for (std::size_t i = 1; i < count; ++i) {
+    knots_.push_back(knots_.back() + std::sqrt(distance_between(views_[i], views_[i - 1])));
+  }
   // The next one beyond either end: of a closed path that which follows, else a mirrored one.
-  const auto last_gap = knots_[count - 1] - knots_[count - 2], first_gap = knots_[1] - knots_[0];
+  const double last_gap = knots_[count - 1] - knots_[count - 2], first_gap = knots_[1] - knots_[0];
   View before = mixed(views_[1], views_[0], 2);
   View after = mixed(views_[count - 2], views_[count - 1], 2);
   double before_gap = first_gap, after_gap = last_gap;
-  if (is_closed && count > 2) {
+  if (returns && count > 2) {
     before = views_[count - 2];
     if (dot(before.turn, views_[0].turn) < 0) before.turn = negative(before.turn);
     after = views_[1];
@@ -186,26 +186,65 @@ CameraPath::CameraPath(const std::vector<CameraKey>& keys, double seconds, bool 
   views_.push_back(after);
   knots_.insert(knots_.begin(), knots_.front() - before_gap);
   knots_.push_back(knots_.back() + after_gap);
-  if (!is_timed) measure(seconds);
+  const std::vector<double> way_of_view = measure();
+  if (is_timed) {
+    for (const std::size_t view : view_of_key) ways_.push_back(way_of_view[view]);
+    times_ = std::move(times);
+  } else {
+    times_ = {0, seconds};
+    ways_ = {0, lengths_.back()};
+  }
+  find_speeds();
 }
 
-/// Notes at which moment a path at constant speed is at which knot.
-void CameraPath::measure(double seconds) {
-  constexpr int parts = 64;  // between two cameras
-  moments_ = {0};
+/// Notes how far it is along the path to which knot. Returns how far it is to each view.
+std::vector<double> CameraPath::measure() {
+  constexpr int parts = 512;  // between two cameras
+  lengths_ = {0};
   places_ = {knots_[1]};
+  std::vector<double> ways{0};
   View last = view_at(knots_[1]);
   for (std::size_t i = 1; i + 2 < knots_.size(); ++i) {
     for (int k = 1; k <= parts; ++k) {
       const double knot = knots_[i] + (knots_[i + 1] - knots_[i]) * k / parts;
       const View next = view_at(knot);
-      moments_.push_back(moments_.back() + distance_between(last, next));
+      lengths_.push_back(lengths_.back() + distance_between(last, next));
       places_.push_back(knot);
       last = next;
     }
+    ways.push_back(lengths_.back());
   }
-  const double all = moments_.back();
-  for (double& moment : moments_) moment *= seconds / all;
+  return ways;
+}
+
+/// Chooses the speed at each time so that the way never goes back and has no corner: the harmonic
+/// mean of the speeds beside it (Fritsch and Butland 1984).
+void CameraPath::find_speeds() {
+  const std::size_t count = times_.size();
+  const auto speed = [&](std::size_t i) {
+    return (ways_[i + 1] - ways_[i]) / (times_[i + 1] - times_[i]);
+  };
+  speeds_.assign(count, 0);
+  if (count < 2) return;
+  speeds_.front() = speed(0);
+  speeds_.back() = speed(count - 2);
+  for (std::size_t i = 1; i + 1 < count; ++i) {
+    const double a = speed(i - 1), b = speed(i);
+    const double share = (times_[i] - times_[i - 1] + 2 * (times_[i + 1] - times_[i])) /
+                         (3 * (times_[i + 1] - times_[i - 1]));
+    speeds_[i] = a * b > 0 ? a * b / (share * b + (1 - share) * a) : 0;
+  }
+}
+
+/// Returns how far the path is at a moment, by the cubic of Hermite between two times.
+double CameraPath::way_at(double seconds) const {
+  if (times_.size() < 2 || !(seconds > times_.front())) return ways_.front();
+  if (!(seconds < times_.back())) return ways_.back();
+  const auto above = std::upper_bound(times_.begin(), times_.end(), seconds);
+  const auto i = static_cast<std::size_t>(above - times_.begin()) - 1;
+  const double gap = times_[i + 1] - times_[i], u = (seconds - times_[i]) / gap, v = 1 - u;
+  return v * v * ((1 + 2 * u) * ways_[i] + u * gap * speeds_[i]) +
+         u * u * ((1 + 2 * v) * ways_[i + 1] - v * gap * speeds_[i + 1]);
 }
 
 CameraPath::View CameraPath::view_at(double knot) const {
@@ -238,14 +277,12 @@ Camera CameraPath::camera_of(const View& view) const {
 
 Camera CameraPath::at(double seconds) const {
   if (views_.size() == 1) return like_;
-  double knot = seconds;
-  if (!moments_.empty()) {
-    const auto above = std::upper_bound(moments_.begin() + 1, moments_.end() - 1, seconds);
-    const auto i = static_cast<std::size_t>(above - moments_.begin());
-    const double share = (seconds - moments_[i - 1]) / (moments_[i] - moments_[i - 1]);
-    knot = places_[i - 1] + std::clamp(share, 0.0, 1.0) * (places_[i] - places_[i - 1]);
-  }
-  return camera_of(view_at(std::clamp(knot, knots_[1], knots_[knots_.size() - 2])));
+  const double way = way_at(seconds);
+  const auto above = std::upper_bound(lengths_.begin() + 1, lengths_.end() - 1, way);
+  const auto i = static_cast<std::size_t>(above - lengths_.begin());
+  const double part = lengths_[i] - lengths_[i - 1];
+  const double share = part > 0 ? std::clamp((way - lengths_[i - 1]) / part, 0.0, 1.0) : 0;
+  return camera_of(view_at(places_[i - 1] + share * (places_[i] - places_[i - 1])));
 }
 
 }  // namespace pellucid

@@ -231,6 +231,31 @@ class Animate(ProgramTest):
                        "o%d.png")
         self.assertEqual(sorted(self.files()), ["scene.json"])
 
+    def test_the_data_are_not_overwritten(self):
+        os.mkdir(self.path("st"))
+        self.succeed("animate", "builtin:shells:16", "--size", "8", "--frames", "3", "-q", "-o",
+                     "st/s%d.png")
+        before = {name: self.read("st/" + name) for name in self.frames("st")}
+        for source in (("st",), ("st/s0.png",), ("st/s%d.png",),
+                       ("builtin:shells:16", "--layer", "st")):
+            for command, output in (("animate", "st/s%d.png"), ("animate", "st/%d.png"),
+                                    ("render", "st/s1.png")):
+                if source[0] != "st" and output == "st/%d.png":
+                    continue
+                self.fail_with("overwrite", command, *source, "-o", output, "--size", "8", code=2)
+        self.assertEqual({name: self.read("st/" + name) for name in self.frames("st")}, before)
+
+    def test_the_camera_holds_what_moves(self):
+        # A bright corner that goes to the other side of the data.
+        values = [[0] * 64 for _ in range(2)]
+        values[0][0] = values[1][63] = 1
+        self.write("run.vti", steps([0, 1], values))
+        self.succeed("animate", "run.vti", "--look", "haze", "--size", "32", "--background",
+                     "transparent", "-o", "f/%d.png")
+        for i in range(2):
+            _, _, _, rows = self.picture(f"f/{i}.png")
+            self.assertTrue(any(any(row[3::4]) for row in rows), f"frame {i} is empty")
+
     def test_without_ffmpeg(self):
         result = self.run_program("animate", "builtin:shells:16", "-o", "o.webm",
                                   env={**os.environ, "PATH": "/nowhere"})

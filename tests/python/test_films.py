@@ -134,6 +134,10 @@ def test_what_is_no_film(tmp_path):
     with pytest.raises(Error, match="has 1 elements"):
         pellucid.frames(scene, {"tracks": [{"target": "/layers/1/visible",
                                             "keys": [{"at": 0, "value": True}]}]})
+    with pytest.raises(Error, match="expected a Scene, got NoneType"):
+        pellucid.frames(None)
+    with pytest.raises(Error, match="fps: expected a number above 0"):
+        pellucid.animate(scene, tmp_path / "%d.png", fps=0)
     with pytest.raises(IndexError):
         pellucid.frames(scene)[120]
     assert json.loads("[]") == list(tmp_path.iterdir())

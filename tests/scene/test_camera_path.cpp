@@ -60,20 +60,20 @@ TEST(CameraPath, PassesThroughItsCameras) {
   const std::vector<CameraKey> keys{
       {on_circle(0), 0.0}, {near, 1.0}, {on_circle(-170, 9), 3.5}, {on_circle(-175, 9), 4.0}};
   const CameraPath path(keys, 4);
-  for (const CameraKey& key : keys) expect_same(path.at(*key.at), key.camera, 1e-12);
-  expect_same(path.at(-1), keys.front().camera, 1e-12);
-  expect_same(path.at(9), keys.back().camera, 1e-12);
+  for (const CameraKey& key : keys) expect_same(path.at(*key.at), key.camera, 1e-9);
+  expect_same(path.at(-1), keys.front().camera, 1e-9);
+  expect_same(path.at(9), keys.back().camera, 1e-9);
 }
 
 // Between two views, half a turn apart at most, there is one arc.
 TEST(CameraPath, TurnsAlongAnArc) {
   const CameraPath path({{on_circle(20), {}}, {on_circle(110), {}}}, 2);
   for (const double share : {0.0, 0.1, 0.5, 0.77, 1.0}) {
-    expect_same(path.at(2 * share), on_circle(20 + 90 * share), 1e-12);
+    expect_same(path.at(2 * share), on_circle(20 + 90 * share), 1e-9);
   }
   // Seen from opposite sides: either way around is right, through the middle is not.
   const CameraPath half({{on_circle(0), {}}, {on_circle(180), {}}}, 1);
-  EXPECT_NEAR(distance_of(half.at(0.5)), 5, 1e-12);
+  EXPECT_NEAR(distance_of(half.at(0.5)), 5, 1e-9);
   EXPECT_NEAR(std::abs(angle_of(half.at(0.25))), 45, 1e-9);
 }
 
@@ -83,12 +83,12 @@ TEST(CameraPath, NearsByLogarithms) {
   Camera close = on_circle(0, 2);
   close.vertical_angle = 10;
   const Camera middle = CameraPath({{far, 0.0}, {close, 1.0}}, 1).at(0.5);
-  EXPECT_NEAR(distance_of(middle), 4, 1e-12);
-  EXPECT_NEAR(middle.vertical_angle, 20, 1e-12);
+  EXPECT_NEAR(distance_of(middle), 4, 1e-9);
+  EXPECT_NEAR(middle.vertical_angle, 20, 1e-9);
   far.projection = close.projection = Projection::orthographic;
   far.parallel_scale = 9;
   close.parallel_scale = 1;
-  EXPECT_NEAR(CameraPath({{far, 0.0}, {close, 1.0}}, 1).at(0.5).parallel_scale, 3, 1e-12);
+  EXPECT_NEAR(CameraPath({{far, 0.0}, {close, 1.0}}, 1).at(0.5).parallel_scale, 3, 1e-9);
 }
 
 // Four views around an object: a circle, at one speed, which ends where it begins.
@@ -101,11 +101,11 @@ TEST(CameraPath, GoesRoundAtOneSpeed) {
   double last = 0, turned = 0;
   for (int i = 1; i <= frames; ++i) {
     const Camera camera = path.at(seconds * i / frames);
-    EXPECT_NEAR(distance_of(camera), 5, 1e-12) << i;
-    EXPECT_NEAR(camera.position.z, 3, 1e-12) << i;
+    EXPECT_NEAR(distance_of(camera), 5, 1e-9) << i;
+    EXPECT_NEAR(camera.position.z, 3, 1e-9) << i;
     const double angle = angle_of(camera);
     const double step = std::remainder(angle - last, 360.0);
-    EXPECT_NEAR(step, 360.0 / frames, 5e-3 * 360 / frames) << i;
+    EXPECT_NEAR(step, 360.0 / frames, 1e-3 * 360 / frames) << i;
     turned += step;
     last = angle;
   }
@@ -122,14 +122,32 @@ TEST(CameraPath, HasNoCorners) {
   const Vec3<double> before = (position(1) - position(1 - h)) * (1 / h);
   const Vec3<double> after = (position(1 + h) - position(1)) * (1 / h);
   EXPECT_GT(length(before), 1);
-  EXPECT_LT(length(after - before), 1e-3 * length(before));
+  EXPECT_LT(length(after - before), 1e-2 * length(before));
+}
+
+// A slow move, a quick one and a slow one: the slow ones do not swing past their ends.
+TEST(CameraPath, DoesNotOvershootAtUnevenTimes) {
+  const CameraPath path(
+      {{on_circle(0), 0.0}, {on_circle(14), 3.0}, {on_circle(180), 3.2}, {on_circle(190), 7.5}}, 8);
+  double last = 0;
+  for (int i = 0; i <= 800; ++i) {
+    const Camera camera = path.at(i / 100.0);
+    const double angle = std::fmod(angle_of(camera) + 720.001, 360.0);
+    EXPECT_GE(angle, last - 1e-9) << i;
+    EXPECT_NEAR(distance_of(camera), 5, 1e-9);
+    if (i <= 300) {
+      EXPECT_LE(angle, 14.002) << i;
+    }
+    last = angle;
+  }
+  EXPECT_NEAR(last, 190, 0.01);
 }
 
 TEST(CameraPath, TakesEqualCamerasForOne) {
   const CameraPath path({{on_circle(0), {}}, {on_circle(0), {}}, {on_circle(90), {}}}, 1);
-  expect_same(path.at(0.5), on_circle(45), 1e-12);
+  expect_same(path.at(0.5), on_circle(45), 1e-9);
   const CameraPath still({{on_circle(7), {}}, {on_circle(7), {}}}, 1, true);
-  expect_same(still.at(0.5), on_circle(7), 1e-12);
+  expect_same(still.at(0.5), on_circle(7), 1e-9);
 }
 
 TEST(CameraPath, RefusesWhatIsNoPath) {

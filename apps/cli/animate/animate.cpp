@@ -18,6 +18,7 @@
 #include "commands.h"
 #include "pellucid/base/version.h"
 #include "pellucid/cluster/communicator.h"
+#include "pellucid/cpu/framed_camera.h"
 #include "pellucid/cpu/renderer.h"
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/film.h"
@@ -121,6 +122,10 @@ Animation animation_of(const AnimateArguments& arguments, const SceneDescription
   }
   // Films of steps keep a frame for each step at another speed.
   const bool is_of_steps = !scene.animation && animation.by_steps;
+  if (is_of_steps && arguments.scene.mesh.time_between == "linear") {
+    animation.by_steps = false;
+    animation.time = {times.all().front(), times.all().back()};
+  }
   const double steps = animation.seconds * animation.fps;
   if (arguments.fps) animation.fps = *arguments.fps;
   if (arguments.seconds) {
@@ -131,6 +136,29 @@ Animation animation_of(const AnimateArguments& arguments, const SceneDescription
     animation.seconds = steps / animation.fps;
   }
   return animation;
+}
+
+/// Returns the scene's camera, moved until it holds the whole box of the data.
+Camera camera_around(const Scene& scene) {
+  Camera camera = scene.camera;
+  const std::array<Vec3<double>, 8> corners = world_corners(scene);
+  const Vec3<double> forward = normalized(camera.focal_point - camera.position);
+  Vec3<double> center{0, 0, 0};
+  for (const Vec3<double>& corner : corners) center = center + corner * 0.125;
+  camera.focal_point = center;
+  camera.position = center - forward;
+  const CameraFrame<double> frame = make_camera_frame(camera, scene.size);
+  const double wide = length(frame.right), high = length(frame.up);
+  double distance = 0;
+  for (const Vec3<double>& corner : corners) {
+    const Vec3<double> offset = corner - center;
+    const double reach = std::max(std::abs(dot(offset, frame.right)) / (wide * wide),
+                                  std::abs(dot(offset, frame.up)) / (high * high));
+    distance = std::max(distance, reach - dot(offset, frame.forward));
+  }
+  constexpr double margin = 1.03;
+  camera.position = center - forward * (distance * margin);
+  return camera;
 }
 
 /// Copies what was chosen from all steps; sources have notes of their own.
@@ -182,6 +210,14 @@ class FilmRun {
             "the scene's tolerance is a share of one picture's range; give --tolerance a number, "
             "which all frames keep");
       }
+      SceneDescription& asked = request.prepared.description;
+      const auto& given = request.description.animation;
+      if (!arguments_.times.empty() || (given && (given->time || given->by_steps))) {
+        request.description.time.reset();
+        asked.time.reset();
+      }
+      resolve_time(request.description);
+      resolve_time(asked);
       times.emplace(request.description);
       animation_ = animation_of(arguments_, request.description, *times);
       written = request.description;
@@ -194,7 +230,13 @@ class FilmRun {
         copy_choice(kept.layers[i], request.description.layers[i]);
       }
     });
-    place_camera(scene, prepared_);
+    const bool moves = animation_.time || animation_.by_steps;
+    place_camera(scene, prepared_, [&](const Scene& first) {
+      // What moves or grows leaves the place of its first step, but not the box of the data.
+      if (moves) return camera_around(first);
+      const RenderOptions quiet = quiet_options_of(scene);
+      return framed_camera(first, first.camera, quiet.machine, quiet.monitor);
+    });
     notes_ = prepared_.import_notes;
     if (prepared_.look && !prepared_.look->name.empty()) notes_.push_back(look_line(prepared_));
     film_.emplace(written, prepared_.description, animation_, *std::move(times));
@@ -370,8 +412,9 @@ int run_on_ranks(AnimateArguments arguments) {
   return 0;
 }
 
-int run_animate(const AnimateArguments& arguments) {
+int run_animate(AnimateArguments arguments) {
   check(arguments);
+  arguments.scene.outputs = {arguments.output};  // which is held against the files of the data
   if (arguments.ranks) {
     if (!arguments.part.empty()) {
       throw UsageError("--part: --ranks deals the frames; leave one of the two out");

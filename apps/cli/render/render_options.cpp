@@ -61,7 +61,7 @@ void add_picture_options(CommandLine& command, RenderArguments& arguments) {
       .add_option(
           "--background", arguments.background,
           "Behind a .png: white, black, #RRGGBB, linear R,G,B, two of them as in "
-          "'#334:black' for a gradient from above, or transparent. Default: the scene's, else a "
+          "'#333344:black' for a gradient from above, or transparent. Default: the scene's, else a "
           "dark gradient. An .exr always stays transparent")
       ->option_text("COLOR");
   command.add_flag(

@@ -37,6 +37,9 @@ class SceneTimes {
 /// Throws Error if none of them has steps.
 void resolve_time(SceneDescription& description);
 
+/// Has data that a film moves, which have no time yet, read at its first frame's.
+void set_first_time(const Animation& film, SceneDescription& description);
+
 /// Returns the film of a scene that has no animation: one frame for each time if its data have
 /// several, at 10 frames per second; else a turntable of 5 s.
 Animation default_animation(const SceneTimes& times);

@@ -29,11 +29,12 @@ struct CameraKey {
 /// four cameras around an object make a circle, which does not cut through it.
 class CameraPath {
  public:
-  /// Makes the way through `keys`, at least one. With times the path is at each key when it says;
-  /// without, its speed is constant over `seconds`, where equal cameras that follow each other
-  /// count as one. `is_closed`: after the last key it returns to the first, at `seconds`. Throws
-  /// Error if there is no key, if some keys have times and others have none, if times do not ascend
-  /// from 0 to `seconds`, if a camera is not valid, or if their projections differ.
+  /// Makes the way through `keys`, at least one. With times the path is at each key when it says,
+  /// and between two its way is a monotone cubic of the time; without, its speed is constant over
+  /// `seconds`, where equal cameras that follow each other count as one. `is_closed`: after the
+  /// last key it returns to the first, at `seconds`. Throws Error if there is no key, if some keys
+  /// have times and others have none, if times do not ascend from 0 to `seconds`, if a camera is
+  /// not valid, or if their projections differ.
   CameraPath(const std::vector<CameraKey>& keys, double seconds, bool is_closed = false);
 
   /// Returns the camera at a moment; before the first key it is the first, after the last the last.
@@ -52,14 +53,16 @@ class CameraPath {
   static double distance_between(const View& a, const View& b);
   View view_at(double knot) const;
   Camera camera_of(const View& view) const;
-  void measure(double seconds);
+  std::vector<double> measure();
+  void find_speeds();
+  double way_at(double seconds) const;
 
   Camera like_;  ///< has the projection of all
   // With one key more than was given at either end, to bend the ends by.
   std::vector<View> views_;
   std::vector<double> knots_;
-  // Of paths at constant speed: moments and knots at the same places.
-  std::vector<double> moments_, places_;
+  std::vector<double> lengths_, places_;       // how far it is to which knot
+  std::vector<double> times_, ways_, speeds_;  // how far the path is at which time, and how fast
 };
 
 }  // namespace pellucid

@@ -19,9 +19,11 @@ std::vector<std::string> tokens_of(const std::string& pointer) {
   if (pointer.empty() || pointer.front() != '/') {
     throw Error("is no JSON pointer: it must begin with /, as in \"/camera/vertical_angle\"");
   }
+  constexpr std::size_t deepest = 32;
   std::vector<std::string> tokens;
   for (std::size_t i = 0; i < pointer.size(); ++i) {
     if (pointer[i] == '/') {
+      if (tokens.size() == deepest) throw Error("has more than 32 levels");
       tokens.emplace_back();
     } else if (pointer[i] != '~') {
       tokens.back() += pointer[i];
@@ -37,6 +39,7 @@ std::vector<std::string> tokens_of(const std::string& pointer) {
 /// Returns the element of an array; null: the array has none there.
 json* element(json& array, const std::string& token) {
   const bool is_index = !token.empty() && token.size() < 8 &&
+                        (token.front() != '0' || token.size() == 1) &&
                         std::ranges::all_of(token, [](char c) { return c >= '0' && c <= '9'; });
   if (!is_index) return nullptr;
   const std::size_t index = std::stoul(token);
@@ -176,7 +179,7 @@ Film::Film(const SceneDescription& written, const SceneDescription& complete,
       place_of(base, part.tokens);
       document_->parts.push_back(std::move(part));
     } catch (const Error& error) {
-      throw Error("animation: track " + std::to_string(i + 1) + ": " + track.target + " " +
+      throw Error("animation: track " + std::to_string(i + 1) + ", target " + track.target + ": " +
                   error.what());
     }
   }

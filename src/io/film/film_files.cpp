@@ -64,9 +64,14 @@ FilmFiles::FilmFiles(std::filesystem::path path) : path_(std::move(path)) {
   const std::filesystem::path folder = is_video() ? folder_ : path_.parent_path();
   // The folder is made with its first picture, so that a film that fails leaves none.
   std::filesystem::path missing;
-  for (std::filesystem::path at = folder; !at.empty() && !std::filesystem::exists(at);
+  std::error_code failure;
+  for (std::filesystem::path at = folder; !at.empty() && !std::filesystem::exists(at, failure);
        at = at.parent_path()) {
+    if (failure) throw Error(at.string() + ": cannot write: " + failure.message());
     missing = at;
+  }
+  if (missing.empty() && !folder.empty() && !std::filesystem::is_directory(folder, failure)) {
+    throw Error(folder.string() + ": is a file, but pictures need a folder of this name");
   }
   check_writable(missing.empty() ? picture(0) : missing);
 }

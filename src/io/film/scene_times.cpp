@@ -22,6 +22,17 @@ void visit_timed(LayerDescription& layer, const Visit& visit) {
   if (layer.mesh && layer.mesh->file != array_in_memory) visit(*layer.mesh, layer.mesh->options);
 }
 
+/// Returns whether one component of a file is chosen, which may be a step. Images have channels
+/// beside their times.
+bool has_component(const FieldSource& source) {
+  const std::string extension = source.file.extension().string();
+  const bool is_image = extension == ".tif" || extension == ".tiff" || extension == ".ome";
+  return source.options.component && !is_image;
+}
+bool has_component(const MeshSource&) {
+  return false;
+}
+
 /// Returns the time that is nearest to a moment, of two as near the earlier.
 double nearest(const std::vector<double>& times, double moment) {
   return *std::min_element(times.begin(), times.end(), [&](double a, double b) {
@@ -36,7 +47,8 @@ SceneTimes::SceneTimes(const SceneDescription& description) {
   times_.resize(scene.layers.size());
   for (std::size_t i = 0; i < scene.layers.size(); ++i) {
     visit_timed(scene.layers[i], [&](const auto& source, const auto& options) {
-      times_[i].push_back(options.time ? std::vector<double>() : source_times(source));
+      const bool is_still = options.time || has_component(source);
+      times_[i].push_back(is_still ? std::vector<double>() : source_times(source));
       all_.insert(all_.end(), times_[i].back().begin(), times_[i].back().end());
     });
   }
@@ -61,6 +73,12 @@ void SceneTimes::set(SceneDescription& description, double moment) const {
       ++times;
     });
   }
+}
+
+void set_first_time(const Animation& film, SceneDescription& description) {
+  const SceneTimes times(description);
+  if (times.all().empty()) return;
+  times.set(description, film.time ? (*film.time)[0] : times.all().front());
 }
 
 void resolve_time(SceneDescription& description) {

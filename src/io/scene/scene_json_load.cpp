@@ -412,8 +412,11 @@ Scene make_scene(const SceneDescription& description, const ParallelFor& paralle
 Scene remake_scene(const SceneDescription& description,
                    const std::vector<std::optional<Layer>>& loaded, const ParallelFor& parallel,
                    std::vector<MeshSource>* meshes_used) {
-  if (description.time) {
+  const auto& film = description.animation;
+  if (description.time || (film && (film->time || film->by_steps))) {
     SceneDescription at_time = description;
+    at_time.animation.reset();
+    if (!at_time.time) set_first_time(*film, at_time);
     resolve_time(at_time);
     return remake_scene(at_time, loaded, parallel, meshes_used);
   }

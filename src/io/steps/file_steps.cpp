@@ -157,6 +157,10 @@ std::vector<FileStep> files_of_list(const fs::path& path) {
     FileStep step;
     step.file = path_inside(path.parent_path(),
                             entry.at("name", "give the name of a file").string(), path.string());
+    const std::string extension = in_small_letters(step.file.extension().string());
+    if (extension == ".series" || extension == ".pvd") {
+      entry.fail_at("name", "is a list itself; give the files that it lists");
+    }
     step.time = entry.at("time", "give the time of the file").number();
     steps.push_back(std::move(step));
   }

@@ -148,6 +148,11 @@ std::vector<ListedStep> steps_of_list(const fs::path& path) {
     if (file == tag->attributes.end() || file->second.empty()) continue;
     ListedStep step;
     step.file = xml_text(file->second);
+    const std::string extension = fs::path(step.file).extension().string();
+    if (extension == ".pvd" || extension == ".series") {
+      throw Error("names the list " + one_line(step.file) +
+                  "; name the files that it lists, as a list in a list is not read");
+    }
     if (time != tag->attributes.end()) {
       const std::optional<double> number = number_of(std::string(time->second));
       if (!number) {
