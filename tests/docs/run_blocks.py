@@ -188,7 +188,9 @@ def main(root, build, name):
             print(f"{name}: the last command ended with {status}")
             return 1
         for file in [file for command in run for file in outputs_of(command)]:
-            written = folder.glob(f"**/{pathlib.Path(file).name}")
+            # Frames of a film have numbers in their names: %04d.
+            name_of_any = re.sub(r"%0?\d*d", "*", pathlib.Path(file).name)
+            written = folder.glob(f"**/{name_of_any}")
             if not any(path.stat().st_size for path in written):
                 print(f"{name}: {file} was not written, or is empty")
                 return 1
