@@ -32,8 +32,7 @@ class FilmScenes {
         animation.empty() ? std::nullopt : std::optional(parse_animation(animation, "animation"));
     const ReleasedLock released;
     SceneDescription timed = complete;
-    const bool moves = wanted && (wanted->time || wanted->by_steps);
-    if (moves) forget_times(timed);
+    if (wanted && wanted->moves_data()) forget_times(timed);
     SceneTimes times(timed);
     film_ = std::make_unique<Film>(timed, timed, wanted ? *wanted : default_animation(times),
                                    std::move(times));
@@ -54,7 +53,7 @@ class FilmScenes {
       description = film_->description(index);
       scene = loader_->load(description, parallel_for(default_thread_count()));
       scene.backdrop = backdrop_;
-      if (are_files(description)) made_from = data_stamp(description) + film_->scene_text(index);
+      if (are_files(description)) made_from = data_stamp(description) + scene_to_json(description);
     }
     return py::make_tuple(to_python(scene, description), made_from);
   }

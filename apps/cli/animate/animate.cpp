@@ -18,7 +18,6 @@
 #include "commands.h"
 #include "pellucid/base/version.h"
 #include "pellucid/cluster/communicator.h"
-#include "pellucid/cpu/framed_camera.h"
 #include "pellucid/cpu/renderer.h"
 #include "pellucid/cpu/threads.h"
 #include "pellucid/io/film.h"
@@ -188,10 +187,9 @@ class FilmRun {
         parallel_(parallel_for(arguments.scene.threads > 0 ? arguments.scene.threads
                                                            : default_thread_count())) {}
 
-  int operator()() {
+  void operator()() {
     load();
     render_all();
-    return 0;
   }
 
   const FilmFiles& files() const noexcept { return files_; }
@@ -212,7 +210,7 @@ class FilmRun {
       }
       SceneDescription& asked = request.prepared.description;
       const auto& given = request.description.animation;
-      if (!arguments_.times.empty() || (given && (given->time || given->by_steps))) {
+      if (!arguments_.times.empty() || (given && given->moves_data())) {
         request.description.time.reset();
         asked.time.reset();
       }
@@ -221,22 +219,20 @@ class FilmRun {
       times.emplace(request.description);
       animation_ = animation_of(arguments_, request.description, *times);
       written = request.description;
-      SceneDescription& kept = request.prepared.description;
-      if (!(animation_.time || animation_.by_steps) || times->all().empty()) return;
+      if (!animation_.moves_data() || times->all().empty()) return;
       const double first = animation_.time ? (*animation_.time)[0] : times->all().front();
-      times->set(kept, first);
+      times->set(asked, first);
       times->set(request.description, first);
-      for (const std::size_t i : choose_for_all_steps(kept, *times, parallel_)) {
-        copy_choice(kept.layers[i], request.description.layers[i]);
+      for (const std::size_t i : choose_for_all_steps(asked, *times, parallel_)) {
+        copy_choice(asked.layers[i], request.description.layers[i]);
       }
     });
-    const bool moves = animation_.time || animation_.by_steps;
-    place_camera(scene, prepared_, [&](const Scene& first) {
+    if (animation_.moves_data()) {
       // What moves or grows leaves the place of its first step, but not the box of the data.
-      if (moves) return camera_around(first);
-      const RenderOptions quiet = quiet_options_of(scene);
-      return framed_camera(first, first.camera, quiet.machine, quiet.monitor);
-    });
+      place_camera(scene, prepared_, camera_around);
+    } else {
+      place_camera(scene, prepared_);
+    }
     notes_ = prepared_.import_notes;
     if (prepared_.look && !prepared_.look->name.empty()) notes_.push_back(look_line(prepared_));
     film_.emplace(written, prepared_.description, animation_, *std::move(times));
@@ -259,6 +255,7 @@ class FilmRun {
   struct Loaded {
     int frame = 0;
     SceneDescription description;
+    std::string stamp;
     Scene scene;
   };
 
@@ -267,12 +264,13 @@ class FilmRun {
     for (; frame < film_->frames(); ++frame) {
       if (!share_.has(frame)) continue;
       SceneDescription description = film_->description(frame);
-      if (files_.has(frame, stamp_of(description))) {
+      std::string stamp = stamp_of(description);
+      if (files_.has(frame, stamp)) {
         ++kept_;
         continue;
       }
       Scene scene = loader_->load(description, parallel_);
-      return Loaded{frame, std::move(description), std::move(scene)};
+      return Loaded{frame, std::move(description), std::move(stamp), std::move(scene)};
     }
     return std::nullopt;
   }
@@ -315,13 +313,7 @@ class FilmRun {
       show(share_done);
       return !InterruptGuard::interrupted();
     };
-    RenderResult result;
-    try {
-      result = renderer_.render(now.scene, options);
-    } catch (const Cancelled&) {
-      InterruptGuard::check();
-      throw;
-    }
+    RenderResult result = unless_interrupted([&] { return renderer_.render(now.scene, options); });
     largest_error_ = std::max(largest_error_, result.report.largest_error);
     if (result.report.pixels_over_tolerance > 0) over_.push_back(now.frame);
     prepared_.description = now.description;
@@ -337,7 +329,7 @@ class FilmRun {
       }
       if (made_ == 0) notes_.insert(notes_.end(), notes.begin(), notes.end());
     }
-    files_.write(now.frame, image, stamp_of(now.description), background);
+    files_.write(now.frame, image, now.stamp, background);
   }
 
  public:

@@ -50,6 +50,7 @@ ProgressLine::~ProgressLine() {
 }
 
 void ProgressLine::show(double share_done) {
+  if (!wanted_) return;
   const int percent = static_cast<int>(100 * std::clamp(share_done, 0.0, 1.0));
   show(fmt::format("rendering {:3} %", percent));
 }

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "pellucid/cpu/render.h"
+
 namespace pellucid::cli {
 
 /// Ctrl-C or a request to end.
@@ -23,6 +25,17 @@ class InterruptGuard {
   /// Throws Interrupted where a signal has come.
   static void check();
 };
+
+/// Calls `work`; where a signal cancels it, throws Interrupted.
+template <class Work>
+auto unless_interrupted(Work&& work) {
+  try {
+    return work();
+  } catch (const Cancelled&) {
+    InterruptGuard::check();
+    throw;
+  }
+}
 
 /// "rendering 42 %", or a text, on stderr, on one line that is updated and in the end removed;
 /// silent where stderr is not a terminal.

@@ -72,17 +72,6 @@ Device device_of(const RenderArguments& arguments) {
   return arguments.device == "emulated" ? Device::emulated : Device::cpu;
 }
 
-/// Calls `work`; where a signal cancels it, throws Interrupted.
-template <class Work>
-auto unless_interrupted(Work&& work) {
-  try {
-    return work();
-  } catch (const Cancelled&) {
-    InterruptGuard::check();
-    throw;
-  }
-}
-
 RenderResult render_image(const RenderArguments& arguments, const PreparedScene& prepared) {
   const Scene& scene = prepared.scene;
   RenderOptions options = options_of(arguments, prepared);

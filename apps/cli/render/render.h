@@ -112,9 +112,9 @@ void add_render_options(CommandLine& command, RenderArguments& arguments);
 /// The part of them that says what is seen, and from where.
 void add_scene_options(CommandLine& command, RenderArguments& arguments);
 
-/// The size of the picture, and what is behind and over it.
+/// Adds the options of the picture: its size, its background and its color bar.
 void add_picture_options(CommandLine& command, RenderArguments& arguments);
-/// How rays are integrated, and on which machine.
+/// Adds the options of the integration: method, tolerance, machine.
 void add_integration_options(CommandLine& command, RenderArguments& arguments);
 
 /// Gives a file alone a look where nothing says how it is shown, or that of --look; one that has a

@@ -47,6 +47,9 @@ struct Animation {
   /// Instead, whether the data go from step to step, each of which is shown equally long.
   bool by_steps = false;
   std::vector<AnimationTrack> tracks;
+
+  /// Returns whether the data change in time.
+  bool moves_data() const noexcept { return time || by_steps; }
 };
 
 inline constexpr int most_frames = 1'000'000;

@@ -66,8 +66,6 @@ class Film {
   std::optional<double> time(int frame) const;
   /// Returns the scene of a frame. It leaves nothing open but what tracks do.
   SceneDescription description(int frame) const;
-  /// Returns the same as JSON.
-  std::string scene_text(int frame) const;
 
  private:
   struct Document;
@@ -83,7 +81,7 @@ class Film {
 /// description stays, with all that renderers have made for them, and data whose sources stay.
 class FrameLoader {
  public:
-  /// Takes the data of `description`, of which the first frame may keep some.
+  /// Starts from the scene that `description` was loaded as.
   FrameLoader(const SceneDescription& description, const Scene& loaded);
 
   /// Throws Error.

@@ -125,21 +125,6 @@ std::vector<std::string> part_of(const std::vector<std::string>& tokens) {
   return {tokens.begin(), tokens.begin() + static_cast<std::ptrdiff_t>(length)};
 }
 
-/// Returns the part of a document; null: it has none.
-const json* find_part(const json& document, const std::vector<std::string>& tokens) {
-  const json* at = &document;
-  for (const std::string& token : tokens) {
-    if (at->is_array()) {
-      at = element(const_cast<json&>(*at), token);  // element() only looks
-    } else {
-      const auto found = at->find(token);
-      at = found == at->end() ? nullptr : &*found;
-    }
-    if (at == nullptr) return nullptr;
-  }
-  return at;
-}
-
 }  // namespace
 
 /// The scene as JSON, and what moves in it.
@@ -170,8 +155,9 @@ Film::Film(const SceneDescription& written, const SceneDescription& complete,
     try {
       MovingPart part{tokens_of(track.target), track.easing, {}, {}};
       const std::vector<std::string> whole = part_of(part.tokens);
-      const json* const own = find_part(as_written, whole);
-      if (own != nullptr) place_of(base, whole) = *own;
+      json::json_pointer place;
+      for (const std::string& token : whole) place /= token;
+      if (as_written.contains(place)) place_of(base, whole) = as_written.at(place);
       for (const AnimationTrack::Key& key : track.keys) {
         part.moments.push_back(key.at);
         part.values.push_back(json::parse(key.value));
@@ -186,7 +172,7 @@ Film::Film(const SceneDescription& written, const SceneDescription& complete,
   if (!animation.cameras.empty()) {
     path_.emplace(animation.cameras, animation.seconds, animation.is_closed);
   }
-  if ((animation.time || animation.by_steps) && times_.all().empty()) {
+  if (animation.moves_data() && times_.all().empty()) {
     throw Error("animation: \"time\" moves, but no data of the scene have steps");
   }
   for (int frame = 0; frame < frames_; ++frame) description(frame);
@@ -224,10 +210,6 @@ SceneDescription Film::description(int frame) const {
   }
   if (const auto moment = time(frame)) times_.set(made, *moment);
   return made;
-}
-
-std::string Film::scene_text(int frame) const {
-  return scene_to_json(description(frame));
 }
 
 Animation default_animation(const SceneTimes& times) {

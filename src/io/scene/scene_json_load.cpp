@@ -413,7 +413,7 @@ Scene remake_scene(const SceneDescription& description,
                    const std::vector<std::optional<Layer>>& loaded, const ParallelFor& parallel,
                    std::vector<MeshSource>* meshes_used) {
   const auto& film = description.animation;
-  if (description.time || (film && (film->time || film->by_steps))) {
+  if (description.time || (film && film->moves_data())) {
     SceneDescription at_time = description;
     at_time.animation.reset();
     if (!at_time.time) set_first_time(*film, at_time);
