@@ -3,7 +3,6 @@
 
 #include <png.h>
 
-#include <csetjmp>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -24,34 +23,21 @@ struct PngText {
   bool found = false;
 };
 
-// libpng leaves by longjmp where it fails, so nothing in here may need a destructor.
 bool read_with_libpng(std::FILE* file, PngText& to, PngFailure& failure) {
-  png_structp png =
-      png_create_read_struct(PNG_LIBPNG_VER_STRING, &failure, leave_png, ignore_png_warning);
-  if (png == nullptr) return false;
-  png_infop info = png_create_info_struct(png);
-  if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
-    png_destroy_read_struct(&png, &info, nullptr);
-    return false;
-  }
-  png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
-  png_init_io(png, file);
-  png_read_info(png, info);
-  png_textp texts = nullptr;
-  int count = 0;
-  png_get_text(png, info, &texts, &count);
-  for (int i = 0; i < count; ++i) {
-    if (std::strcmp(texts[i].key, to.key) != 0) continue;
-    to.text = texts[i].text;
-    to.found = true;
-  }
-  to.row.resize(png_get_rowbytes(png, info));
-  for (png_uint_32 y = 0; y < png_get_image_height(png, info); ++y) {
-    png_read_row(png, to.row.data(), nullptr);
-  }
-  png_read_end(png, nullptr);
-  png_destroy_read_struct(&png, &info, nullptr);
-  return true;
+  return read_png(file, failure, [&](png_structp png, png_infop info) {
+    png_textp texts = nullptr;
+    int count = 0;
+    png_get_text(png, info, &texts, &count);
+    for (int i = 0; i < count; ++i) {
+      if (std::strcmp(texts[i].key, to.key) != 0) continue;
+      to.text = texts[i].text;
+      to.found = true;
+    }
+    to.row.resize(png_get_rowbytes(png, info));
+    for (png_uint_32 y = 0; y < png_get_image_height(png, info); ++y) {
+      png_read_row(png, to.row.data(), nullptr);
+    }
+  });
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <csetjmp>
 #include <cstdint>
 #include <cstdio>
 #include <optional>
@@ -33,32 +32,19 @@ struct Rows {
   std::size_t bytes_per_row;
 };
 
-// libpng leaves by longjmp where it fails, so nothing in here may need a destructor.
 bool read_with_libpng(std::FILE* file, const Rows& to, PngFailure& failure) {
-  png_structp png =
-      png_create_read_struct(PNG_LIBPNG_VER_STRING, &failure, leave_png, ignore_png_warning);
-  if (png == nullptr) return false;
-  png_infop info = png_create_info_struct(png);
-  if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
-    png_destroy_read_struct(&png, &info, nullptr);
-    return false;
-  }
-  png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
-  png_init_io(png, file);
-  png_read_info(png, info);
-  if (std::endian::native == std::endian::little) png_set_swap(png);
-  const int passes = png_set_interlace_handling(png);
-  png_read_update_info(png, info);
-  if (png_get_rowbytes(png, info) != to.bytes_per_row)
-    png_error(png, "its header contradicts itself");
-  for (int pass = 0; pass < passes; ++pass) {
-    for (png_uint_32 y = 0; y < to.rows; ++y) {
-      png_read_row(png, to.first + y * to.bytes_per_row, nullptr);
+  return read_png(file, failure, [&](png_structp png, png_infop info) {
+    if (std::endian::native == std::endian::little) png_set_swap(png);
+    const int passes = png_set_interlace_handling(png);
+    png_read_update_info(png, info);
+    if (png_get_rowbytes(png, info) != to.bytes_per_row)
+      png_error(png, "its header contradicts itself");
+    for (int pass = 0; pass < passes; ++pass) {
+      for (png_uint_32 y = 0; y < to.rows; ++y) {
+        png_read_row(png, to.first + y * to.bytes_per_row, nullptr);
+      }
     }
-  }
-  png_read_end(png, nullptr);
-  png_destroy_read_struct(&png, &info, nullptr);
-  return true;
+  });
 }
 
 class PngReader : public PageReader {
