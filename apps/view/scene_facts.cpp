@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "histograms.h"
+#include "pellucid/io/internal/patient_space.h"
 #include "pellucid/io/read_volume.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/presets.h"
@@ -15,19 +16,6 @@
 namespace pellucid::view {
 
 namespace {
-
-bool is_anatomical(const LayerDescription& layer) {
-  const auto is_patient = [](const FieldSource& field) {
-    return field.builtin.empty() && is_placed_in_lps(field.file, field.options);
-  };
-  if (layer.mesh) return false;
-  if (layer.labels) return is_patient(layer.labels->field);
-  if (layer.channels.empty()) return is_patient(layer.field);
-  return std::ranges::all_of(layer.channels, [&](const ChannelSource& channel) {
-    const auto* const field = std::get_if<FieldSource>(&channel.source);
-    return field == nullptr || is_patient(*field);
-  });
-}
 
 const char* kind_of(const Layer& layer) {
   constexpr const char* names[] = {"volume", "channels", "mesh", "labels"};
@@ -139,7 +127,7 @@ FileChoices all_choices(const LayerDescription& layer) {
 }
 
 Lettering lettering_of(const SceneDescription& description) {
-  const bool anatomical = std::ranges::all_of(description.layers, is_anatomical);
+  const bool anatomical = std::ranges::all_of(description.layers, is_of_patient);
   return {anatomical, anatomical ? "mm" : ""};
 }
 

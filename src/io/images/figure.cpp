@@ -9,7 +9,6 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 
 #include "box_axes.h"
 #include "cairo_module.h"
@@ -20,7 +19,7 @@
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/io/internal/module.h"
-#include "pellucid/io/read_volume.h"
+#include "pellucid/io/internal/patient_space.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/internal/axis_ticks.h"
 #include "png_bytes.h"
@@ -40,20 +39,6 @@ constexpr double degrees_along_axis = 15;
 
 DrawFigure* draw_figure() {
   return reinterpret_cast<DrawFigure*>(module_function(cairo, draw_figure_name));
-}
-
-bool is_of_patient(const LayerDescription& layer) {
-  const auto is_placed = [](const FieldSource& field) {
-    return field.builtin.empty() && has_source(field) &&
-           is_placed_in_lps(field.file, field.options);
-  };
-  if (layer.mesh) return false;
-  if (layer.labels) return is_placed(layer.labels->field);
-  if (layer.channels.empty()) return is_placed(layer.field);
-  return std::ranges::all_of(layer.channels, [&](const ChannelSource& channel) {
-    const auto* const field = std::get_if<FieldSource>(&channel.source);
-    return field == nullptr || is_placed(*field);
-  });
 }
 
 /// Returns a number with so many digits, 1.2e-05 as 1.2e-5.

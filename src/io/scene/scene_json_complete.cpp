@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <variant>
 
+#include "pellucid/io/internal/patient_space.h"
+#include "pellucid/io/read_volume.h"
 #include "pellucid/io/scene_json.h"
 #include "scene_json_change.h"
 
@@ -43,6 +46,20 @@ void complete_description(const Layer& layer, LayerDescription& description) {
     TransferFunctionDescription& function = description.mask->choices[i].transfer_function;
     if (is_open(function)) function = volume->mask->choices()[i].transfer_function->points();
   }
+}
+
+bool is_of_patient(const LayerDescription& layer) {
+  const auto is_placed = [](const FieldSource& field) {
+    return field.builtin.empty() && has_source(field) &&
+           is_placed_in_lps(field.file, field.options);
+  };
+  if (layer.mesh) return false;
+  if (layer.labels) return is_placed(layer.labels->field);
+  if (layer.channels.empty()) return is_placed(layer.field);
+  return std::ranges::all_of(layer.channels, [&](const ChannelSource& channel) {
+    const auto* const field = std::get_if<FieldSource>(&channel.source);
+    return field == nullptr || is_placed(*field);
+  });
 }
 
 void visit_sources(LayerDescription& layer, const std::function<void(FieldSource&)>& visit) {
