@@ -36,26 +36,30 @@ Camera view_camera(const std::array<Vec3<double>, 8>& corners, std::string_view 
   const auto view = std::find_if(std::begin(views), std::end(views),
                                  [&](const View& v) { return v.name == name; });
   if (view == std::end(views)) return default_camera(corners, size);
+  return camera_along(view->forward, view->up, corners, size);
+}
 
+Camera camera_along(const Vec3<double>& forward, const Vec3<double>& up,
+                    const std::array<Vec3<double>, 8>& corners, ImageSize size) {
   Vec3<double> center{0, 0, 0};
   for (const Vec3<double>& corner : corners) center = center + corner * 0.125;
 
   Camera camera;
   camera.focal_point = center;
-  camera.up = view->up;
+  camera.up = up;
   const double tangent = std::tan(camera.vertical_angle * std::numbers::pi / 360);
   const double aspect = static_cast<double>(size.width) / static_cast<double>(size.height);
-  const Vec3<double> right = cross(view->forward, view->up);
+  const Vec3<double> right = cross(forward, up);
   // The nearest distance at which every corner of the box is inside of the image.
   double distance = 0;
   for (const Vec3<double>& corner : corners) {
     const Vec3<double> offset = corner - center;
     const double half_height =
-        std::max(std::abs(dot(offset, view->up)), std::abs(dot(offset, right)) / aspect);
-    distance = std::max(distance, half_height / tangent - dot(offset, view->forward));
+        std::max(std::abs(dot(offset, up)), std::abs(dot(offset, right)) / aspect);
+    distance = std::max(distance, half_height / tangent - dot(offset, forward));
   }
   constexpr double margin = 1.03;
-  camera.position = center - view->forward * (distance * margin);
+  camera.position = center - forward * (distance * margin);
   return camera;
 }
 

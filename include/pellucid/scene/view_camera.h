@@ -20,6 +20,11 @@ const std::vector<std::string>& view_names();
 Camera view_camera(const std::array<Vec3<double>, 8>& corners, std::string_view name,
                    ImageSize size);
 
+/// Returns a perspective camera that looks along `forward`, with `up` upwards, both of length 1 and
+/// at right angles, and just holds a box (world_corners) with 3 % to spare.
+Camera camera_along(const Vec3<double>& forward, const Vec3<double>& up,
+                    const std::array<Vec3<double>, 8>& corners, ImageSize size);
+
 /// Turns a camera around its focal point, by degrees: `azimuth` moves it to the right around its
 /// upward direction, `elevation` moves it up and takes that direction along, as VTK's cameras do.
 /// Throws Error if the camera has no view direction, or looks along its `up`.
