@@ -12,8 +12,7 @@
 #include <vector>
 
 #include "pellucid/io/film.h"
-#include "pellucid/scene/defaults.h"
-#include "pellucid/scene/presets.h"
+#include "scene/layer_functions.h"
 
 namespace pellucid {
 namespace {
@@ -101,10 +100,6 @@ bool leaves_open(const LayerDescription& layer) {
   return (preset != nullptr && !preset->range) || layer.function_change.range;
 }
 
-bool takes_look(const LayerDescription& layer) {
-  return layer.look && !layer.transfer_function && !layer.projection && !layer.shows_surfaces();
-}
-
 /// Writes a look as it was chosen into a description.
 void write_look(Look look, LayerDescription& layer) {
   if (layer.look->chosen) layer.look->chosen(look);
@@ -119,31 +114,20 @@ void write_look(Look look, LayerDescription& layer) {
 bool choose(LayerDescription& layer, const Volume& first, const Volume& pooled) {
   const FunctionChange& change = layer.function_change;
   if (takes_look(layer)) {
-    WantedLook wanted = *layer.look;
-    Look look = choose_look(first, wanted.name, change);
-    if (look.as_labels) return false;
-    if (wanted.has_function && !look.isosurfaces.empty()) look.name = "haze";
-    const std::string reason = std::move(look.reason);
-    look = choose_look(pooled, look.name, change);
-    look.reason = reason;
+    const Look of_first = look_of(first, layer);
+    if (of_first.as_labels) return false;
+    Look look = choose_look(pooled, of_first.name, change);
+    look.reason = of_first.reason;
     write_look(std::move(look), layer);
     return true;
   }
-  TransferFunction function({{0, 0, {}}});
-  if (!layer.transfer_function) {
-    if (layer.shows_surfaces()) return false;
-    function = layer.projection ? projection_transfer_function(pooled, *layer.projection)
-                                : default_transfer_function(pooled);
-  } else if (const auto* preset = std::get_if<PresetDescription>(&*layer.transfer_function)) {
-    const auto range = change.range ? range_of(change, pooled) : preset->range;
-    function = make_preset(preset->name, pooled, range);
-  } else if (const auto* points =
-                 std::get_if<std::vector<TransferFunction::Point>>(&*layer.transfer_function)) {
-    function = TransferFunction(*points);
-  } else {
+  if (layer.transfer_function
+          ? std::holds_alternative<OpacityTable>(*layer.transfer_function) ||
+                std::holds_alternative<MultivariateDescription>(*layer.transfer_function)
+          : layer.shows_surfaces()) {
     return false;
   }
-  layer.transfer_function = changed(function, change, pooled).points();
+  layer.transfer_function = changed(function_on(pooled, layer), change, pooled).points();
   layer.function_change = {};
   return true;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "layer_functions.h"
 #include "pellucid/io/film.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/label_table.h"
@@ -135,7 +136,7 @@ ChannelsContent load_channels_content(const LayerDescription& description,
 
 /// Returns the look of a volume or a mesh.
 template <class Data>
-Look look_of(const Data& data, const LayerDescription& description) {
+Look chosen_look(const Data& data, const LayerDescription& description) {
   const WantedLook& wanted = *description.look;
   Look look = choose_look(data, wanted.name, description.function_change);
   const bool lacks_function = look.as_labels || !look.isosurfaces.empty();
@@ -143,11 +144,6 @@ Look look_of(const Data& data, const LayerDescription& description) {
   look = choose_look(data, "haze", description.function_change);
   look.reason = "a function to save";
   return look;
-}
-
-bool takes_look(const LayerDescription& description) {
-  return description.look && !description.transfer_function && !description.projection &&
-         !description.mask && !description.shows_surfaces();
 }
 
 /// Whose function is of one variable or of several. `look` becomes the layer's look, if it takes
@@ -175,7 +171,7 @@ MeshContent load_mesh_content(const LayerDescription& description, const Wanted&
     mesh_used.channels = std::move(mesh.channels);
   }
   if (takes_look(description)) {
-    look = look_of(*content.mesh, description);
+    look = chosen_look(*content.mesh, description);
     content.transfer_function = std::make_shared<const TransferFunction>(look->transfer_function);
   } else if (content.multivariate() == nullptr) {
     content.transfer_function = std::make_shared<const TransferFunction>(
@@ -194,7 +190,7 @@ VolumeContent load_volume_content(const LayerDescription& description, const Wan
     content.volume = std::make_shared<const Volume>(load_field(description.field));
   }
   if (takes_look(description)) {
-    look = look_of(*content.volume, description);
+    look = chosen_look(*content.volume, description);
     content.transfer_function = std::make_shared<const TransferFunction>(look->transfer_function);
     return content;
   }
@@ -363,6 +359,19 @@ Layer load_layer(const LayerDescription& description, const Wanted& wanted, cons
 }
 
 }  // namespace
+
+bool takes_look(const LayerDescription& description) {
+  return description.look && !description.transfer_function && !description.projection &&
+         !description.mask && !description.shows_surfaces();
+}
+
+Look look_of(const Volume& volume, const LayerDescription& description) {
+  return chosen_look(volume, description);
+}
+
+TransferFunction function_on(const Volume& volume, const LayerDescription& description) {
+  return medium_function(description, Wanted{}, volume);
+}
 
 std::vector<ChannelSource> layer_channels(const LayerDescription& description) {
   if (description.mesh || description.labels) return {};

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pellucid/io/scene_json.h"
+
+namespace pellucid {
+
+/// Returns whether choose_look() says how a layer is shown.
+bool takes_look(const LayerDescription& description);
+/// Returns the look of such a layer with these data. Throws Error.
+Look look_of(const Volume& volume, const LayerDescription& description);
+/// Returns the function of one variable that a description says of a layer, or leaves to these
+/// data, before function_change. An opacity table is none. Throws Error.
+TransferFunction function_on(const Volume& volume, const LayerDescription& description);
+
+}  // namespace pellucid
