@@ -90,10 +90,8 @@ void bind_films(py::module_& module) {
           "write",
           [](const FilmFiles& files, int frame, const ImageHandle& image,
              const std::string& made_from) {
-            std::optional<Background> background = image.background;
-            if (files.is_video() && !background) background = calm_background();
             const ReleasedLock released;
-            files.write(frame, *image.image, made_from, background);
+            files.write(frame, *image.image, made_from, image.background);
           },
           py::arg("frame"), py::arg("image"), py::arg("made_from"))
       .def("finish", &FilmFiles::finish, py::arg("frames"), py::arg("fps"),

@@ -26,12 +26,11 @@ class FilmFiles {
   bool is_video() const noexcept { return !folder_.empty(); }
   /// Returns the path of a picture, counted from 0.
   std::filesystem::path picture(int frame) const;
-  /// Returns the largest number of pictures.
-  int most_pictures() const noexcept { return most_; }
 
   /// Returns whether the picture of a frame is there, whole, and was made from the same.
   bool has(int frame, const std::string& made_from) const;
-  /// Writes the picture of a frame. A .png is composited over the background, if there is one.
+  /// Writes the picture of a frame. A .png is composited over the background, if there is one; of a
+  /// video without one over calm_background().
   /// Throws Error.
   void write(int frame, const Image& image, const std::string& made_from,
              const std::optional<Background>& background) const;
@@ -42,7 +41,7 @@ class FilmFiles {
  private:
   std::filesystem::path path_, folder_;  ///< folder of a video's pictures; empty: none is wanted
   std::string before_, after_;           ///< the number in the name of a picture
-  int digits_ = 6, most_ = 0;
+  int digits_ = 6;
 };
 
 /// Returns what says of which data a scene was made: size and time of change of each file.

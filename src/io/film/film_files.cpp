@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "files/numbered_files.h"
 #include "images/picture_text.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/scene_json.h"
@@ -18,24 +19,12 @@ namespace {
 
 constexpr const char* made_from_key = "pellucid.made_from";
 
-/// The place of the number in a name: %d or %04d.
-struct NumberPlace {
-  std::size_t begin = 0, end = 0;
-  int digits = 1;
-};
-
-std::optional<NumberPlace> number_place(const std::string& name) {
-  const std::size_t begin = name.find('%');
-  if (begin == std::string::npos || name.find('%', begin + 1) != std::string::npos) return {};
-  std::size_t end = begin + 1;
-  NumberPlace place{begin, 0, 1};
-  if (name[end] == '0' && name[end + 1] >= '1' && name[end + 1] <= '9') {
-    place.digits = name[end + 1] - '0';
-    end += 2;
-  }
-  if (end >= name.size() || name[end] != 'd') return {};
-  place.end = end + 1;
-  return place;
+/// Returns the pattern of a name with one %d or %04d, of up to nine digits, and no other %.
+std::optional<NamePattern> frame_pattern(const std::string& name) {
+  std::optional<NamePattern> pattern = name_pattern(name);
+  if (!pattern || std::ranges::count(name, '%') != 1) return std::nullopt;
+  const bool is_plain = pattern->letter == 'd' && !pattern->plus && pattern->width < 10;
+  return is_plain && pattern->zeros == (pattern->width > 0) ? pattern : std::nullopt;
 }
 
 }  // namespace
@@ -50,17 +39,16 @@ FilmFiles::FilmFiles(std::filesystem::path path) : path_(std::move(path)) {
     after_ = ".png";
   } else {
     const bool is_picture = extension == ".png" || extension == ".exr";
-    const auto place = is_picture ? number_place(name) : std::nullopt;
-    if (!place) {
+    const auto pattern = is_picture ? frame_pattern(name) : std::nullopt;
+    if (!pattern) {
       throw Error(path_.string() +
                   ": cannot be a film; give a name that ends in .webm or .mp4, or one of pictures "
                   "with a place for their number, as frames/%04d.png");
     }
-    before_ = name.substr(0, place->begin);
-    after_ = name.substr(place->end);
-    digits_ = place->digits;
+    before_ = pattern->before;
+    after_ = pattern->behind;
+    digits_ = static_cast<int>(pattern->width);
   }
-  most_ = 1'000'000;
   const std::filesystem::path folder = is_video() ? folder_ : path_.parent_path();
   // The folder is made with its first picture, so that a film that fails leaves none.
   std::filesystem::path missing;
@@ -105,7 +93,8 @@ void FilmFiles::write(int frame, const Image& image, const std::string& made_fro
   if (path.extension() == ".exr") {
     write_exr(stamped, path);
   } else {
-    write_png(stamped, path, background);
+    // A video has no transparency.
+    write_png(stamped, path, is_video() && !background ? calm_background() : background);
   }
 }
 
