@@ -116,9 +116,7 @@ Command add_export(CommandLine& app) {
       "export", "Write a page that shows data in any browser, exact, by itself");
   const auto arguments = std::make_shared<ExportArguments>();
   arguments->scene.suggests_functions = true;
-  command.add_option(
-      "INPUT", arguments->scene.input,
-      input_help() + ", " + mesh_input_help() + ", SCENE.json or builtin:NAME[:POINTS]");
+  command.add_option("INPUT", arguments->scene.input, scene_input_help());
   command
       .add_option("-o,--output", arguments->output,
                   "Write this page. It holds the data, the viewer and the renderer, and asks for "

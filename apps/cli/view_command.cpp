@@ -130,10 +130,8 @@ Command add_view(CommandLine& app) {
       "view", "Turn and edit a volume, a mesh or a scene in the browser of this machine");
   const auto arguments = std::make_shared<ViewArguments>();
   arguments->scene.suggests_functions = true;
-  command.add_option(
-      "INPUT", arguments->scene.input,
-      input_help() + ", " + mesh_input_help() +
-          ", SCENE.json or builtin:NAME[:POINTS]. Without it the page asks for a file");
+  command.add_option("INPUT", arguments->scene.input,
+                     scene_input_help() + ". Without it the page asks for a file");
   command
       .add_option("--port", arguments->port,
                   "Serve the page at this port of the loopback interface. Default: any free one")

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "input.h"
 #include "parse.h"
 
 namespace pellucid::cli {
@@ -68,6 +69,10 @@ void MeshOptions::refuse_q(const std::string& what) const {
 
 std::string mesh_input_help() {
   return fmt::format("mesh ({})", mesh_extensions());
+}
+
+std::string scene_input_help() {
+  return input_help() + ", " + mesh_input_help() + ", SCENE.json or builtin:NAME[:POINTS]";
 }
 
 bool is_mesh(const std::string& input, const MeshOptions& options) {

@@ -44,6 +44,8 @@ struct MeshOptions {
 
 /// Returns the kinds of INPUT besides a volume, for help texts.
 std::string mesh_input_help();
+/// Returns what INPUT of a command that shows data may be, for help.
+std::string scene_input_help();
 
 /// Returns whether INPUT is a mesh: by --solution, or by the file.
 bool is_mesh(const std::string& input, const MeshOptions& options);

@@ -256,9 +256,7 @@ Command add_render(CommandLine& app) {
   CommandLine& command =
       *app.add_subcommand("render", "Render a volume, a mesh or a scene to an image");
   const auto arguments = std::make_shared<RenderArguments>();
-  command.add_option("INPUT", arguments->input,
-                     input_help() + ", " + mesh_input_help() +
-                         ", SCENE.json or builtin:NAME[:POINTS]; optional with --channel");
+  command.add_option("INPUT", arguments->input, scene_input_help() + "; optional with --channel");
   add_render_options(command, *arguments);
   command.footer(
       fmt::format("Built-in fields, with POINTS values along each axis (default 128):\n  {}\n",
