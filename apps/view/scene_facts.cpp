@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "histograms.h"
+#include "pellucid/geometry/box_around.h"
 #include "pellucid/io/internal/patient_space.h"
 #include "pellucid/io/read_volume.h"
 #include "pellucid/scene/error.h"
@@ -20,22 +21,6 @@ namespace {
 const char* kind_of(const Layer& layer) {
   constexpr const char* names[] = {"volume", "channels", "mesh", "labels"};
   return names[layer.content.index()];
-}
-
-Json range_of(const Layer& layer) {
-  if (const auto* volume = std::get_if<VolumeContent>(&layer.content)) {
-    const VolumeStatistics& statistics = volume->volume->statistics();
-    return {statistics.minimum, statistics.maximum};
-  }
-  if (const auto* mesh = std::get_if<MeshContent>(&layer.content)) {
-    const VolumeStatistics& statistics = mesh->mesh->statistics(0);
-    return {statistics.minimum, statistics.maximum};
-  }
-  if (const auto* channels = std::get_if<ChannelsContent>(&layer.content)) {
-    const VolumeStatistics& statistics = channels->channels->grid().statistics();
-    return {statistics.minimum, statistics.maximum};
-  }
-  return {0, 1};
 }
 
 /// Returns the range of each channel that slices show.
@@ -55,20 +40,9 @@ Json ranges_of(const Layer& layer) {
 }
 
 Json box_of(const Scene& scene) {
-  const std::array<Vec3<double>, 8> corners = world_corners(scene);
-  Vec3<double> lower = corners[0], upper = corners[0];
-  for (const Vec3<double>& corner : corners) {
-    for (int a = 0; a < 3; ++a) {
-      lower[a] = std::min(lower[a], corner[a]);
-      upper[a] = std::max(upper[a], corner[a]);
-    }
-  }
+  const auto [lower, upper] = box_around(world_corners(scene));
   return {{"lower", {lower.x, lower.y, lower.z}}, {"upper", {upper.x, upper.y, upper.z}}};
 }
-
-}  // namespace
-
-namespace {
 
 /// Returns whether a part of the layer's file can be chosen: it is one field of a file.
 bool is_one_field(const LayerDescription& layer) {
@@ -148,10 +122,11 @@ Json scene_json(const SceneState& state, const std::vector<FileChoices>& choices
   Json layers = Json::array();
   for (std::size_t i = 0; i < choices.size(); ++i) {
     const Layer& layer = state.scene().layers[i];
+    const Json ranges = ranges_of(layer);
     layers.push_back({{"kind", kind_of(layer)},
                       {"channels", channel_names_of(layer)},
-                      {"range", range_of(layer)},
-                      {"ranges", ranges_of(layer)},
+                      {"range", ranges.empty() ? Json::array({0, 1}) : ranges[0]},
+                      {"ranges", ranges},
                       {"steps", slice_steps_json(layer)},
                       {"file", has_file(state.description().layers[i])},
                       {"components", choices[i].components},

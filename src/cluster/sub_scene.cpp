@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "pellucid/geometry/box_around.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/internal/value_noise.h"
 
@@ -100,15 +101,7 @@ DataExtent extent_of(const Layer& layer) {
             std::ranges::all_of(coordinates, [](const auto& c) { return c.empty(); })};
   }
   // A box along the axes of the mesh's own world, moved.
-  const std::array<Vec3<double>, 8> corners = world_corners(layer);
-  DataExtent extent{{}, {corners[0], corners[0]}, false};
-  for (const Vec3<double>& corner : corners) {
-    for (int a = 0; a < 3; ++a) {
-      extent.box.lower[a] = std::min(extent.box.lower[a], corner[a]);
-      extent.box.upper[a] = std::max(extent.box.upper[a], corner[a]);
-    }
-  }
-  return extent;
+  return {{}, box_around(world_corners(layer)), false};
 }
 
 DataExtent extent_of(const Volume::Description& description, const Affine<double>& transform) {

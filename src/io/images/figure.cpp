@@ -15,6 +15,7 @@
 #include "image_checks.h"
 #include "legend_panel.h"
 #include "pellucid/base/version.h"
+#include "pellucid/geometry/box_around.h"
 #include "pellucid/io/display_bytes.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/internal/atomic_file.h"
@@ -221,14 +222,9 @@ DrawnFigure drawn(const FigurePage& page) {
 FigureSpace figure_space(const SceneDescription& description, const Scene& scene) {
   FigureSpace space;
   space.camera = scene.camera;
-  const std::array<Vec3<double>, 8> corners = world_corners(scene);
-  space.lower = space.upper = corners[0];
-  for (const Vec3<double>& corner : corners) {
-    for (int a = 0; a < 3; ++a) {
-      space.lower[a] = std::min(space.lower[a], corner[a]);
-      space.upper[a] = std::max(space.upper[a], corner[a]);
-    }
-  }
+  const Box<double> box = box_around(world_corners(scene));
+  space.lower = box.lower;
+  space.upper = box.upper;
   space.is_anatomical = std::ranges::all_of(description.layers, is_of_patient);
   if (space.is_anatomical) space.unit = "mm";
   return space;

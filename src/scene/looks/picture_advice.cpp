@@ -10,6 +10,7 @@
 
 #include "layer_light.h"
 #include "message.h"
+#include "pellucid/geometry/box_around.h"
 #include "value_sample.h"
 
 namespace pellucid {
@@ -137,13 +138,7 @@ std::vector<std::string> surface_advice(const Scene& scene) {
       if (misses(layer.slices[n], layer)) slices.push_back(std::to_string(n + 1));
     }
     if (slices.empty()) continue;
-    Vec3<double> lower = world_corners(layer)[0], upper = lower;
-    for (const Vec3<double>& corner : world_corners(layer)) {
-      for (int a = 0; a < 3; ++a) {
-        lower[a] = std::min(lower[a], corner[a]);
-        upper[a] = std::max(upper[a], corner[a]);
-      }
-    }
+    const auto [lower, upper] = box_around(world_corners(layer));
     std::string box;
     for (int a = 0; a < 3; ++a) {
       box += std::string(a == 0 ? "" : ", ") + "xyz"[a] + " from " + number(lower[a]) + " to " +
