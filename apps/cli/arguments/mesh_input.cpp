@@ -10,7 +10,7 @@ namespace pellucid::cli {
 
 namespace {
 
-constexpr const char* group = "Options of mesh files";
+constexpr const char* mesh_group = "Options of mesh files";
 
 }  // namespace
 
@@ -37,7 +37,7 @@ TimeBetween between_steps(const std::string& text, bool has_time) {
 }
 
 void MeshOptions::add_to(CommandLine& command, bool with_arrays) {
-  const auto add = [&](Option* option) { given.push_back(option->group(group)); };
+  const auto add = [&](Option* option) { given.push_back(option->group(mesh_group)); };
   if (with_arrays) {
     add(command
             .add_option(

@@ -18,6 +18,7 @@
 #include "info_arrays.h"
 #include "info_levels.h"
 #include "info_mesh.h"
+#include "info_numbers.h"
 #include "info_series.h"
 #include "orientation.h"
 #include "pellucid/base/version.h"
@@ -97,15 +98,6 @@ bool is_rectilinear(const Volume& volume) {
   const auto& coordinates = volume.description().coordinates;
   return std::any_of(coordinates.begin(), coordinates.end(),
                      [](const auto& axis) { return !axis.empty(); });
-}
-
-// The sum turns -0 into 0.
-std::string number(double x) {
-  return fmt::format("{:.6g}", x + 0.0);
-}
-
-std::string triple(const Vec3<double>& v) {
-  return fmt::format("{} {} {}", number(v.x), number(v.y), number(v.z));
 }
 
 std::string readable_bytes(std::size_t bytes) {

@@ -12,7 +12,7 @@ std::string centering_name(const VolumeArray& array) {
 }
 
 /// Also of infinite values, of which no volume can be made.
-std::string range_text(const VolumeStatistics& component) {
+std::string component_text(const VolumeStatistics& component) {
   // The sums turn -0 into 0.
   std::string text =
       component.finite == 0
@@ -34,7 +34,7 @@ std::string arrays_text(const std::vector<VolumeArray>& arrays, const std::strin
     }
     std::string ranges;
     for (const VolumeStatistics& component : array.components) {
-      ranges += (ranges.empty() ? "" : "; ") + range_text(component);
+      ranges += (ranges.empty() ? "" : "; ") + component_text(component);
     }
     const std::size_t components =
         array.components.size() + static_cast<std::size_t>(array.more_components);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "arguments/output.h"
+#include "info_numbers.h"
 #include "pellucid/base/version.h"
 #include "pellucid/cpu/threads.h"
 
@@ -90,14 +91,6 @@ std::string centering_name(const MeshArray& array) {
 }
 
 // The sum turns -0 into 0.
-std::string number(double x) {
-  return fmt::format("{:.6g}", x + 0.0);
-}
-
-std::string triple(const Vec3<double>& v) {
-  return fmt::format("{} {} {}", number(v.x), number(v.y), number(v.z));
-}
-
 std::string range_text(const MeshArray& array) {
   std::string text;
   for (int c = 0; c < array.components; ++c) {

@@ -6,12 +6,11 @@
 #include <utility>
 
 #include "pellucid/scene/error.h"
+#include "position_names.h"
 
 namespace pellucid {
 
 namespace {
-
-constexpr const char* letters = "xyz";
 
 AxisRole space_role(std::size_t place) {
   constexpr std::array roles{AxisRole::x, AxisRole::y, AxisRole::z};
@@ -79,7 +78,7 @@ const char* entries_of(AxisRole role) {
 
 [[noreturn]] void refuse_images(std::span<const AxisText> axes, const NamedAxes& named,
                                 std::size_t place) {
-  const std::string end = std::string(" and not ") + letters[place] +
+  const std::string end = std::string(" and not ") + axis_letters[place] +
                           ": images, no volume; save it with an axis of depth";
   constexpr std::array named_roles{std::pair{AxisRole::time, "time"},
                                    std::pair{AxisRole::member, "members of an ensemble"},
@@ -90,14 +89,14 @@ const char* entries_of(AxisRole role) {
     const auto number = static_cast<std::size_t>(axis - named.roles.begin());
     throw Error("an array whose axis " + axes[number].name + " is " + what + end);
   }
-  throw Error("an array without an axis that could be " + std::string(1, letters[place]));
+  throw Error("an array without an axis that could be " + std::string(1, axis_letters[place]));
 }
 
 void note_places(std::span<const AxisText> axes, const NamedAxes& named, VolumeAxes& volume) {
   for (std::size_t place = 0; place < 3; ++place) {
     const std::size_t axis = volume.space[place];
     if (std::ranges::find(named.by_place, axis) == named.by_place.end()) continue;
-    volume.notes.push_back("its axis " + axes[axis].name + " is taken for " + letters[place] +
+    volume.notes.push_back("its axis " + axes[axis].name + " is taken for " + axis_letters[place] +
                            "; nothing says what it is");
   }
   for (const std::size_t axis : named.unknown) {

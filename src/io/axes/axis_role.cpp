@@ -15,11 +15,6 @@ namespace pellucid {
 namespace {
 
 template <std::size_t count>
-bool is_among(const std::array<std::string_view, count>& list, std::string_view text) {
-  return std::ranges::find(list, text) != list.end();
-}
-
-template <std::size_t count>
 bool begins_with_one(const std::array<std::string_view, count>& list, std::string_view text) {
   return std::ranges::any_of(list, [&](std::string_view begin) { return text.starts_with(begin); });
 }

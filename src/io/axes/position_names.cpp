@@ -7,8 +7,6 @@ namespace pellucid {
 
 namespace {
 
-constexpr std::string_view letters = "xyz";
-
 constexpr auto spacings = std::to_array<std::string_view>(
     {"spacing", "spacings", "voxelsize", "voxelsizes", "voxelspacing", "pixelsize", "pixelspacing",
      "pixdim", "zooms", "elementsize", "elementspacing", "gridspacing", "voxeldims",
@@ -56,8 +54,8 @@ NameParts parts_of(const std::string& name) {
     } else if (parts.words.size() > 1 && is_among(units, each)) {
       parts.units = each;
     } else if (parts.words.size() > 1 && each.size() == 1 &&
-               letters.find(each) != std::string_view::npos) {
-      parts.axis = letters.find(each);
+               axis_letters.find(each) != std::string_view::npos) {
+      parts.axis = axis_letters.find(each);
     } else {
       parts.bare += each;
     }
@@ -73,7 +71,7 @@ AlongOne along_one(const NameParts& parts, std::size_t& axis) {
   }
   const std::string& bare = parts.bare;
   const auto letter_at = [&](std::size_t place) {
-    axis = letters.find(bare[place]);
+    axis = axis_letters.find(bare[place]);
     return axis != std::string_view::npos;
   };
   if (bare.size() == 2 && bare[0] == 'd' && letter_at(1)) return AlongOne::spacing;

@@ -13,10 +13,7 @@
 
 namespace pellucid {
 
-template <std::size_t count>
-bool is_among(const std::array<std::string_view, count>& list, std::string_view text) {
-  return std::ranges::find(list, text) != list.end();
-}
+inline constexpr std::string_view axis_letters = "xyz";
 
 /// The name of an array, in small letters, taken apart: "voxel_size_zyx_um" is "voxelsize", zyx and
 /// um.

@@ -19,8 +19,6 @@ namespace pellucid {
 
 namespace {
 
-constexpr std::string_view letters = "xyz";
-
 bool is_matrix(const ArrayBeside& array) {
   return array.shape.size() == 2 && (array.shape[0] == 4 || array.shape[0] == 3) &&
          array.shape[1] == 4;
@@ -161,7 +159,7 @@ class Reader {
   /// "x, y, z" of the array's axes.
   std::string order_text() const {
     std::vector<std::pair<std::size_t, char>> axes;
-    for (std::size_t a = 0; a < 3; ++a) axes.emplace_back(found_.space[a], letters[a]);
+    for (std::size_t a = 0; a < 3; ++a) axes.emplace_back(found_.space[a], axis_letters[a]);
     std::ranges::sort(axes);
     std::string text;
     for (const auto& [axis, letter] : axes)
@@ -178,7 +176,7 @@ class Reader {
       const AxisRole role = coordinate_role(array.name);
       if (role == AxisRole::time || !is_in_order(array.numbers)) continue;
       const std::size_t a = role == AxisRole::x ? 0 : role == AxisRole::y ? 1 : 2;
-      const bool is_letter = in_small_letters(array.name) == std::string(1, letters[a]);
+      const bool is_letter = in_small_letters(array.name) == std::string(1, axis_letters[a]);
       if (of[a] == nullptr || is_letter) of[a] = &array;
     }
     return of;

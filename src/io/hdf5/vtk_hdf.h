@@ -16,6 +16,9 @@
 
 namespace pellucid {
 
+/// The name of an array that says which places are ghosts or hidden.
+inline constexpr const char* ghost_flags = "vtkGhostType";
+
 /// An array of a VTKHDF file.
 struct VtkHdfArray {
   enum class Place : std::uint8_t { root, point, cell } place = Place::root;

@@ -19,7 +19,6 @@ namespace pellucid {
 namespace {
 
 constexpr const char* damaged = "; the file is cut off or damaged";
-constexpr const char* ghosts = "vtkGhostType";
 // vtkDataSetAttributes.h, of VTK 9.
 constexpr unsigned duplicate_cell = 1, refined_cell = 8, hidden_cell = 32, hidden_point = 2;
 
@@ -365,9 +364,9 @@ class Reader {
   std::vector<bool> flagged(VtkHdfArray::Place place, std::size_t first, std::size_t count) const {
     const bool of_cells = place == VtkHdfArray::Place::cell;
     const unsigned any = of_cells ? duplicate_cell | refined_cell | hidden_cell : hidden_point;
-    const Values* const found = find(ghosts, place);
+    const Values* const found = find(ghost_flags, place);
     if (found == nullptr) return {};
-    const std::vector<std::int64_t> flags = whole_numbers(found->number, ghosts);
+    const std::vector<std::int64_t> flags = whole_numbers(found->number, ghost_flags);
     if (flags.size() < first + count) {
       throw Error(std::string("the number of ghost flags is not that of the ") +
                   (of_cells ? "cells" : "points") + damaged);
@@ -404,7 +403,7 @@ class Reader {
                   const std::vector<std::size_t>& cells, UnstructuredGrid& block) const {
     for (const Values& from : arrays_) {
       const VtkHdfArray& array = *from.array;
-      if (array.name == ghosts) continue;
+      if (array.name == ghost_flags) continue;
       const bool point = array.place == VtkHdfArray::Place::point;
       const std::size_t components =
           array.sides.size() == 2 ? static_cast<std::size_t>(array.sides[1]) : 1;

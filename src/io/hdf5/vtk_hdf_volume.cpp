@@ -41,8 +41,6 @@ struct Image {
   std::size_t shown = 0;        ///< of `arrays`
 };
 
-constexpr const char* ghosts = "vtkGhostType";
-
 /// Returns the number of values along an axis: of cells there is one less than of points.
 std::int64_t side(const Image& image, const VtkHdfArray& array, std::size_t axis) {
   return image.points[axis] - (array.place == VtkHdfArray::Place::cell ? 1 : 0);
@@ -67,7 +65,7 @@ void set_points(Image& image, const std::string& name) {
 }
 
 void add_array(Image& image, const VtkHdfArray& array) {
-  if (array.place == VtkHdfArray::Place::root || array.name == ghosts) return;
+  if (array.place == VtkHdfArray::Place::root || array.name == ghost_flags) return;
   Named named;
   named.name = array.name;
   named.array = array;
@@ -211,7 +209,7 @@ VolumeFile open_vtk_hdf(const std::filesystem::path& path, const ReadOptions& op
   refuse_raw_options(options, name);
   const Image image = image_of(path);
   if (std::ranges::any_of(image.contents.arrays,
-                          [](const VtkHdfArray& a) { return a.name == ghosts; }) &&
+                          [](const VtkHdfArray& a) { return a.name == ghost_flags; }) &&
       options.note) {
     options.note("the file marks ghost or hidden places (vtkGhostType), which are shown as any");
   }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cairo_module.h"
+#include "cairo_pen.h"
 #include "cairo_text.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/internal/axis_ticks.h"
@@ -23,10 +24,6 @@ constexpr double padding = 0.7, margin = 0.8, line = 1.35, title_line = 1.95, st
 constexpr double widest = 0.3, tallest_bar = 0.5;
 constexpr Signal panel_color{0.06, 0.065, 0.075, 0.85}, text_color{1, 1, 1, 1},
     line_color{1, 1, 1, 0.75}, dark_checker{0.32, 0.32, 0.32, 1}, light_checker{0.7, 0.7, 0.7, 1};
-
-struct Box {
-  double x = 0, y = 0, width = 0, height = 0;
-};
 
 class Sheet {
  public:
@@ -95,13 +92,13 @@ class Sheet {
     cairo_set_source_rgba(context(), color[0], color[1], color[2], color[3]);
   }
 
-  void fill(const Box& box, const Signal& color) const {
+  void fill(const PageBox& box, const Signal& color) const {
     set_color(color);
     cairo_rectangle(context(), box.x, box.y, box.width, box.height);
     cairo_fill(context());
   }
 
-  void frame(const Box& box) const {
+  void frame(const PageBox& box) const {
     set_color(line_color);
     cairo_set_line_width(context(), std::max(1.0, font_ / 16));
     cairo_rectangle(context(), box.x, box.y, box.width, box.height);
@@ -114,7 +111,7 @@ class Sheet {
     cairo_show_text(context(), text.c_str());
   }
 
-  void fill_rounded(const Box& box) const {
+  void fill_rounded(const PageBox& box) const {
     constexpr double quarter = std::numbers::pi / 2;
     const double r = 0.4 * font_, right = box.x + box.width, low = box.y + box.height;
     cairo_new_path(context());
@@ -143,8 +140,8 @@ class Sheet {
       inner = std::max(inner, (swatch + 0.5) * font_ + width_of(fitted(entry.name)));
     }
     const double width = inner + 2 * padding * font_;
-    const Box box{width_ - margin * font_ - width, top, width,
-                  height_without_bar(panel) + (panel.colors.empty() ? 0 : bar_height)};
+    const PageBox box{width_ - margin * font_ - width, top, width,
+                      height_without_bar(panel) + (panel.colors.empty() ? 0 : bar_height)};
     fill_rounded(box);
     const double left = box.x + padding * font_;
     double y = top + padding * font_;
@@ -157,7 +154,7 @@ class Sheet {
       y += bar_height + (panel.entries.empty() ? 0 : padding * font_);
     }
     for (const LegendPanel::Entry& entry : panel.entries) {
-      const Box square{left, y + 0.2 * font_, swatch * font_, swatch * font_};
+      const PageBox square{left, y + 0.2 * font_, swatch * font_, swatch * font_};
       fill(square, entry.color);
       frame(square);
       write(fitted(entry.name), left + (swatch + 0.5) * font_, y + font_);
@@ -166,10 +163,11 @@ class Sheet {
   }
 
   /// Draws the strip of the opacity, over a checkerboard, that of the colors, and the numbers.
-  void draw_bar(const LegendPanel& panel, const std::vector<Tick>& ticks, const Box& box) const {
-    const Box colors{box.x + box.width - strip * font_, box.y, strip * font_, box.height};
+  void draw_bar(const LegendPanel& panel, const std::vector<Tick>& ticks,
+                const PageBox& box) const {
+    const PageBox colors{box.x + box.width - strip * font_, box.y, strip * font_, box.height};
     if (!panel.opacity.empty()) {
-      const Box opacity{box.x, box.y, opacity_strip * font_, box.height};
+      const PageBox opacity{box.x, box.y, opacity_strip * font_, box.height};
       draw_checkers(opacity);
       draw_strip(panel, opacity, true);
       frame(opacity);
@@ -188,7 +186,7 @@ class Sheet {
     }
   }
 
-  void draw_checkers(const Box& box) const {
+  void draw_checkers(const PageBox& box) const {
     const double size = box.width / 2;
     fill(box, light_checker);
     const int rows = static_cast<int>(std::ceil(box.height / size));
@@ -200,7 +198,7 @@ class Sheet {
   }
 
   /// Fills rows of pixels, each with the color of its middle.
-  void draw_strip(const LegendPanel& panel, const Box& box, bool with_opacity) const {
+  void draw_strip(const LegendPanel& panel, const PageBox& box, bool with_opacity) const {
     const auto last = static_cast<double>(panel.colors.size() - 1);
     const int rows = std::max(1, static_cast<int>(std::ceil(box.height)));
     cairo_set_antialias(context(), CAIRO_ANTIALIAS_NONE);

@@ -127,7 +127,7 @@ void draw_png(const FigurePage& page, Layout layout, DrawnFigure& drawn) {
     const double dy = std::round(scale * layout.picture.y) / scale - layout.picture.y;
     layout.picture = layout.picture.moved(dx, dy);
     const auto whole = [&](double x) { return std::round(scale * x) / scale; };
-    const Box& stage = layout.stage;
+    const PageBox& stage = layout.stage;
     layout.stage = {whole(stage.x), whole(stage.y), whole(stage.right()) - whole(stage.x),
                     whole(stage.bottom()) - whole(stage.y)};
     compose(page, layout, pen);

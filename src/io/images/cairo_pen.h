@@ -14,18 +14,18 @@ namespace pellucid {
 /// Sizes of text in figures, in points.
 inline constexpr double text_size = 7, caption_size = 6.5;
 
-struct Box {
+struct PageBox {
   double x = 0, y = 0, width = 0, height = 0;
 
   double right() const { return x + width; }
   double bottom() const { return y + height; }
-  bool overlaps(const Box& other) const {
+  bool overlaps(const PageBox& other) const {
     return x < other.right() && other.x < right() && y < other.bottom() && other.y < bottom();
   }
-  bool holds(const Box& other) const {
+  bool holds(const PageBox& other) const {
     return other.x >= x && other.y >= y && other.right() <= right() && other.bottom() <= bottom();
   }
-  void include(const Box& other) {
+  void include(const PageBox& other) {
     const double to_right = std::max(right(), other.right());
     const double to_bottom = std::max(bottom(), other.bottom());
     x = std::min(x, other.x);
@@ -33,8 +33,8 @@ struct Box {
     width = to_right - x;
     height = to_bottom - y;
   }
-  Box grown(double by) const { return {x - by, y - by, width + 2 * by, height + 2 * by}; }
-  Box moved(double dx, double dy) const { return {x + dx, y + dy, width, height}; }
+  PageBox grown(double by) const { return {x - by, y - by, width + 2 * by, height + 2 * by}; }
+  PageBox moved(double dx, double dy) const { return {x + dx, y + dy, width, height}; }
 };
 
 /// Throws Error unless all is well.
@@ -139,13 +139,13 @@ class Pen {
     cairo_stroke(get());
   }
 
-  void fill(const Box& box, const Signal& color) const {
+  void fill(const PageBox& box, const Signal& color) const {
     set_color(color);
     cairo_rectangle(get(), box.x, box.y, box.width, box.height);
     cairo_fill(get());
   }
 
-  void frame(const Box& box, double width, const Signal& color) const {
+  void frame(const PageBox& box, double width, const Signal& color) const {
     set_color(color);
     cairo_set_line_width(get(), width);
     cairo_rectangle(get(), box.x, box.y, box.width, box.height);

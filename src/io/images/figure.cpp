@@ -29,7 +29,8 @@
 namespace pellucid {
 namespace {
 
-constexpr Module cairo{"pellucid_cairo.so", "draws figures", "Cairo (Debian: libcairo2-dev)"};
+constexpr Module figures_module{"pellucid_cairo.so", "draws figures",
+                                "Cairo (Debian: libcairo2-dev)"};
 constexpr double points_per_mm = 72 / 25.4;
 /// Share of the picture's width that a scale bar may take.
 constexpr double longest_scale_bar = 0.3;
@@ -39,7 +40,7 @@ constexpr double farthest_box = 0.75;
 constexpr double degrees_along_axis = 15;
 
 DrawFigure* draw_figure() {
-  return reinterpret_cast<DrawFigure*>(module_function(cairo, draw_figure_name));
+  return reinterpret_cast<DrawFigure*>(module_function(figures_module, draw_figure_name));
 }
 
 /// Returns a number with so many digits, 1.2e-05 as 1.2e-5.

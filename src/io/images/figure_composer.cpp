@@ -33,7 +33,7 @@ constexpr Signal black{0, 0, 0, 1}, white{1, 1, 1, 1}, grey{0.5, 0.5, 0.5, 1},
 /// Text at an axis.
 struct PlacedText {
   std::string text;
-  Box box;
+  PageBox box;
   bool is_upright = false;  ///< true if it runs from below upwards
 };
 
@@ -52,14 +52,14 @@ class Composer {
     double low = 0, high = most / page_.picture_width;
     for (int step = 0; step < 60; ++step) {
       const double middle = step == 0 ? high : (low + high) / 2;
-      const Box stage = stage_at(middle);
+      const PageBox stage = stage_at(middle);
       const bool fits = stage.width <= most * (1 + 1e-9) && stage.height <= tallest_stage;
       (fits ? low : high) = middle;
       if (step == 0 && fits) break;
     }
     made.scale = low;
     if (!(low > 0)) throw Error("no room for the picture beside its legends; make it wider");
-    const Box stage = stage_at(low);
+    const PageBox stage = stage_at(low);
     const double picture_x = -stage.x, picture_y = -stage.y;
     lay_bars(stage.height, made);
     const double legends = legends_height(made);
@@ -86,7 +86,7 @@ class Composer {
     pen_.set_color(white);
     cairo_paint(pen_.get());
     draw_picture();
-    std::vector<Box> taken;
+    std::vector<PageBox> taken;
     draw_axes(layout, taken);
     draw_edge_letters(layout, taken);
     draw_directions(layout, taken);
@@ -208,7 +208,7 @@ class Composer {
         if (!panel.names.empty()) y += between_panels / 2;
       }
       for (std::size_t i = 0; i < panel.names.size(); ++i) {
-        const Box square{layout.column, y + (line_height - swatch) / 2, swatch, swatch};
+        const PageBox square{layout.column, y + (line_height - swatch) / 2, swatch, swatch};
         pen_.fill(square, panel.panel->entries[i].color);
         pen_.frame(square, thin, black);
         for (const std::string& text : panel.names[i]) {
@@ -221,11 +221,11 @@ class Composer {
     }
   }
 
-  void draw_bar(const LaidPanel& laid, const Box& box) {
+  void draw_bar(const LaidPanel& laid, const PageBox& box) {
     const LegendPanel& panel = *laid.panel;
-    const Box colors{box.right() - strip, box.y, strip, box.height};
+    const PageBox colors{box.right() - strip, box.y, strip, box.height};
     if (!panel.opacity.empty()) {
-      const Box opacity{box.x, box.y, opacity_strip, box.height};
+      const PageBox opacity{box.x, box.y, opacity_strip, box.height};
       draw_checkers(opacity);
       draw_strip(panel, opacity, true);
       pen_.frame(opacity, thin, black);
@@ -250,7 +250,7 @@ class Composer {
     cairo_restore(pen_.get());
   }
 
-  void draw_checkers(const Box& box) {
+  void draw_checkers(const PageBox& box) {
     const double size = box.width / 2;
     pen_.fill(box, light_checker);
     const int rows = static_cast<int>(std::ceil(box.height / size));
@@ -262,7 +262,7 @@ class Composer {
   }
 
   /// Draws a column of pixels, each with the color of its middle.
-  void draw_strip(const LegendPanel& panel, const Box& box, bool with_opacity) {
+  void draw_strip(const LegendPanel& panel, const PageBox& box, bool with_opacity) {
     const auto last = static_cast<double>(panel.colors.size() - 1);
     CairoSurface column(cairo_image_surface_create(
         with_opacity ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24, 1, bar_rows));
@@ -287,7 +287,7 @@ class Composer {
 
  public:
   /// Draws a picture of so many pixels into a box, without a blend of neighbors.
-  void paint(cairo_surface_t* surface, const Box& box, int width, int height) {
+  void paint(cairo_surface_t* surface, const PageBox& box, int width, int height) {
     cairo_save(pen_.get());
     cairo_translate(pen_.get(), box.x, box.y);
     cairo_scale(pen_.get(), box.width / width, box.height / height);
@@ -317,7 +317,7 @@ class Composer {
   }
 
   /// Returns black or white, which stands out from what is under the box.
-  Signal ink(const Layout& layout, const Box& box) const {
+  Signal ink(const Layout& layout, const PageBox& box) const {
     double sum = 0;
     for (int i = 0; i < 8; ++i) {
       for (int j = 0; j < 8; ++j) {
@@ -330,7 +330,7 @@ class Composer {
   }
 
   /// Returns the share of a box under which data are seen.
-  double covered_share(const Layout& layout, const Box& box) const {
+  double covered_share(const Layout& layout, const PageBox& box) const {
     if (page_.covered.empty()) return 0;
     constexpr int samples = 24;
     int count = 0;
@@ -351,7 +351,7 @@ class Composer {
 
   /// Writes text with its box, in a color that stands out.
   void write_over(const Layout& layout, const PlacedText& text) {
-    const Box& box = text.box;
+    const PageBox& box = text.box;
     const Signal color = ink(layout, box);
     const bool is_edged = covered_share(layout, box) > 0;
     cairo_save(pen_.get());
@@ -366,8 +366,8 @@ class Composer {
   }
 
   /// Returns where text stands beside a point: `gap` away in a direction of length 1.
-  Box beside(const std::string& text, double x, double y, const PagePoint& direction, double gap,
-             bool is_upright = false) const {
+  PageBox beside(const std::string& text, double x, double y, const PagePoint& direction,
+                 double gap, bool is_upright = false) const {
     double width = pen_.width_of(text), height = pen_.digit_height();
     if (is_upright) std::swap(width, height);
     const double reach =
@@ -388,7 +388,7 @@ class Composer {
     for (const PageAxis& axis : page_.axes) {
       double reach = 0;
       for (const PageAxis::Tick& each : axis.ticks) {
-        const Box box =
+        const PageBox box =
             beside(each.label, scale * each.at.x, scale * each.at.y, axis.outward, tick + tick_gap);
         add({each.label, box});
         reach = std::max(
@@ -406,12 +406,12 @@ class Composer {
   }
 
   /// Returns the stage relative to the picture's corner.
-  Box stage_at(double scale) const {
-    Box stage{0, 0, scale * page_.picture_width, scale * page_.picture_height};
+  PageBox stage_at(double scale) const {
+    PageBox stage{0, 0, scale * page_.picture_width, scale * page_.picture_height};
     if (!page_.grows || page_.axes.empty()) return stage;
     for (const PlacedText& text : axis_texts(scale)) stage.include(text.box.grown(2));
     const auto include = [&](const PagePoint& point) {
-      stage.include(Box{scale * point.x, scale * point.y, 0, 0}.grown(2));
+      stage.include(PageBox{scale * point.x, scale * point.y, 0, 0}.grown(2));
     };
     for (const PageAxis& axis : page_.axes) {
       include(axis.from);
@@ -425,7 +425,7 @@ class Composer {
   }
 
   /// Draws the axes; `taken` gets the places that they take.
-  void draw_axes(const Layout& layout, std::vector<Box>& taken) {
+  void draw_axes(const Layout& layout, std::vector<PageBox>& taken) {
     const auto x_of = [&](const PagePoint& p) { return layout.picture.x + layout.scale * p.x; };
     const auto y_of = [&](const PagePoint& p) { return layout.picture.y + layout.scale * p.y; };
     const auto ink_at = [&](const PagePoint& a, const PagePoint& b) {
@@ -464,15 +464,15 @@ class Composer {
     }
   }
 
-  void draw_edge_letters(const Layout& layout, std::vector<Box>& taken) {
-    const Box& stage = layout.stage;
+  void draw_edge_letters(const Layout& layout, std::vector<PageBox>& taken) {
+    const PageBox& stage = layout.stage;
     const double height = pen_.digit_height();
     for (std::size_t edge = 0; edge < 4; ++edge) {
       const std::string& letter = page_.edge_letters[edge];
       if (letter.empty()) continue;
       const double width = pen_.width_of(letter);
-      Box box{stage.x + (stage.width - width) / 2, stage.y + (stage.height - height) / 2, width,
-              height};
+      PageBox box{stage.x + (stage.width - width) / 2, stage.y + (stage.height - height) / 2, width,
+                  height};
       if (edge == 0) box.x = stage.x + inset;
       if (edge == 1) box.x = stage.right() - inset - width;
       if (edge == 2) box.y = stage.y + inset;
@@ -485,17 +485,17 @@ class Composer {
 
   /// Returns the place of a part of this size in the corner with the fewest data under it, in this
   /// order if they are alike: left or right, bottom or top.
-  Box corner_place(const Layout& layout, double width, double height, bool right_first,
-                   const std::vector<Box>& taken) const {
-    const Box& stage = layout.stage;
-    Box best{};
+  PageBox corner_place(const Layout& layout, double width, double height, bool right_first,
+                       const std::vector<PageBox>& taken) const {
+    const PageBox& stage = layout.stage;
+    PageBox best{};
     double least = 1e9;
     for (int n = 0; n < 4; ++n) {
       const bool right = ((n & 1) != 0) != right_first, top = n >= 2;
-      const Box box{right ? stage.right() - inset - width : stage.x + inset,
-                    top ? stage.y + inset : stage.bottom() - inset - height, width, height};
+      const PageBox box{right ? stage.right() - inset - width : stage.x + inset,
+                        top ? stage.y + inset : stage.bottom() - inset - height, width, height};
       double cost = covered_share(layout, box.grown(2));
-      for (const Box& other : taken) cost += other.grown(3).overlaps(box) ? 2 : 0;
+      for (const PageBox& other : taken) cost += other.grown(3).overlaps(box) ? 2 : 0;
       if (cost >= least) continue;
       least = cost;
       best = box;
@@ -503,10 +503,10 @@ class Composer {
     return best;
   }
 
-  void draw_directions(const Layout& layout, std::vector<Box>& taken) {
+  void draw_directions(const Layout& layout, std::vector<PageBox>& taken) {
     if (page_.directions.empty()) return;
     // The lines go from the middle, their letters stand around it.
-    Box around{0, 0, 0, 0};
+    PageBox around{0, 0, 0, 0};
     std::vector<PlacedText> texts;
     for (const PageDirection& direction : page_.directions) {
       const double x = arrow * direction.seen.x, y = arrow * direction.seen.y;
@@ -518,7 +518,7 @@ class Composer {
       around.include(texts.back().box);
     }
     if (around.width > layout.stage.width / 2 || around.height > layout.stage.height / 2) return;
-    const Box place = corner_place(layout, around.width, around.height, false, taken);
+    const PageBox place = corner_place(layout, around.width, around.height, false, taken);
     const double x = place.x - around.x, y = place.y - around.y;
     taken.push_back(place);
     const Signal color = ink(layout, place);
@@ -533,14 +533,14 @@ class Composer {
     for (const PlacedText& text : texts) write_over(layout, {text.text, text.box.moved(x, y)});
   }
 
-  void draw_scale_bar(const Layout& layout, std::vector<Box>& taken) {
+  void draw_scale_bar(const Layout& layout, std::vector<PageBox>& taken) {
     if (!(page_.scale_bar > 0)) return;
     const double length = page_.scale_bar * layout.scale;
     const double text = pen_.width_of(page_.scale_bar_label);
     const double width = std::max(length, text);
     const double height = pen_.digit_height() + 3 + scale_line;
     if (width > layout.stage.width - 2 * inset || height > layout.stage.height - 2 * inset) return;
-    const Box place = corner_place(layout, width, height, true, taken);
+    const PageBox place = corner_place(layout, width, height, true, taken);
     taken.push_back(place);
     const Signal color = ink(layout, place);
     const double y = place.bottom() - scale_line / 2, x = place.x + (width - length) / 2;
@@ -588,8 +588,8 @@ void compose(const FigurePage& page, const Layout& layout, Pen& pen) {
   Composer composer(page, pen);
   composer.draw(layout, [&] {
     const CairoSurface behind = surface_of(page.behind, 1, page.picture_height);
-    const Box& stage = layout.stage;
-    const Box& picture = layout.picture;
+    const PageBox& stage = layout.stage;
+    const PageBox& picture = layout.picture;
     const auto edge = [&](std::size_t row) {
       const std::uint8_t* const at = &page.behind[3 * row];
       return Signal{at[0] / 255.0, at[1] / 255.0, at[2] / 255.0, 1};

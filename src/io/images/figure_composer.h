@@ -24,7 +24,7 @@ struct LaidPanel {
 struct Layout {
   double page_width = 0, page_height = 0;
   double scale = 0;  ///< points per pixel of the picture
-  Box stage, picture;
+  PageBox stage, picture;
   double column = 0;  ///< left edge of the legends
   double bar_height = 0;
   std::vector<LaidPanel> panels;

@@ -31,18 +31,18 @@ using Columns = std::array<Vec3<double>, 4>;
 constexpr Columns identity{Vec3<double>{1, 0, 0}, Vec3<double>{0, 1, 0}, Vec3<double>{0, 0, 1},
                            Vec3<double>{0, 0, 0}};
 
-struct Document {
+struct IvfDocument {
   InviwoHeader header;
   std::optional<Columns> basis, world;
   int files = 0;
 };
 
 /// One file's tags.
-class Reader {
+class IvfReader {
  public:
-  Reader(std::string_view text, const std::string& name) : scanner_(text, name), name_(name) {}
+  IvfReader(std::string_view text, const std::string& name) : scanner_(text, name), name_(name) {}
 
-  Document read() {
+  IvfDocument read() {
     bool little = true;
     std::string_view key;
     Columns* columns = nullptr;
@@ -157,7 +157,7 @@ class Reader {
 
   XmlScanner scanner_;
   const std::string& name_;
-  Document document_;
+  IvfDocument document_;
   bool has_sides_ = false;
   std::set<std::string> seen_;
 };
@@ -170,7 +170,7 @@ VolumeFile open_ivf(const std::filesystem::path& path, const ReadOptions& option
   refuse_raw_options(options, name);
   constexpr std::size_t largest = std::size_t{1} << 24;
   const std::string text = read_text_file(path, largest);
-  const Document document = Reader(text, name).read();
+  const IvfDocument document = IvfReader(text, name).read();
   InviwoHeader header = document.header;
   header.values = path.parent_path() / header.values;
   header.world = document.world;

@@ -41,7 +41,7 @@ struct Mapping {
   double scale = 1, offset = 0;
 };
 
-struct Document {
+struct VvdDocument {
   InviwoHeader header;
   Vec3<double> spacing{1, 1, 1}, offset{0, 0, 0};
   std::array<std::array<double, 4>, 4> rows{
@@ -52,11 +52,11 @@ struct Document {
 };
 
 /// One file's tags.
-class Reader {
+class VvdReader {
  public:
-  Reader(std::string_view text, const std::string& name) : scanner_(text, name), name_(name) {}
+  VvdReader(std::string_view text, const std::string& name) : scanner_(text, name), name_(name) {}
 
-  Document read() {
+  VvdDocument read() {
     while (const std::optional<XmlTag> tag = scanner_.next()) {
       const bool raw = tag->name == "RawData";
       if (tag->closes) {
@@ -142,13 +142,13 @@ class Reader {
 
   XmlScanner scanner_;
   const std::string& name_;
-  Document document_;
+  VvdDocument document_;
   std::string item_;  ///< name of the MetaItem around, in small letters
   bool in_raw_ = false;
   std::set<std::string> seen_;
 };
 
-fs::path file_of(const Document& document, const fs::path& folder) {
+fs::path file_of(const VvdDocument& document, const fs::path& folder) {
   std::error_code error;
   for (const std::string& path : document.paths) {
     if (!path.empty() && fs::is_regular_file(folder / path, error)) return folder / path;
@@ -156,7 +156,7 @@ fs::path file_of(const Document& document, const fs::path& folder) {
   return folder / document.paths.front();
 }
 
-void place(const Document& document, const std::string& name, GridPlacement& placement) {
+void place(const VvdDocument& document, const std::string& name, GridPlacement& placement) {
   const auto& rows = document.rows;
   if (rows[3] != std::array<double, 4>{0, 0, 0, 1}) {
     throw Error(name + ": its Transformation is no affine map, whose last row is 0 0 0 1");
@@ -224,7 +224,7 @@ VolumeFile open_vvd(const fs::path& path, const ReadOptions& options) {
   // Previews and histograms stand in it, too.
   constexpr std::size_t largest = std::size_t{1} << 26;
   const std::string text = read_text_file(path, largest);
-  Document document = Reader(text, name).read();
+  VvdDocument document = VvdReader(text, name).read();
   document.header.values = file_of(document, path.parent_path());
   ReadOptions rest = options;
   rest.spacing.reset();

@@ -20,20 +20,9 @@ namespace {
 using Note = std::function<void(const std::string&)>;
 
 /// Returns the words of a field, one for each axis; empty where there is no such field.
-std::vector<std::string> words_of(const Header& header, std::string_view field) {
-  const Line* line = find_field(header, field);
-  return line == nullptr ? std::vector<std::string>() : axes_of(line->value);
-}
-
 std::vector<std::string> centerings_of(const Header& header) {
   std::vector<std::string> words = words_of(header, "centerings");
   return words.empty() ? words_of(header, "centers") : words;
-}
-
-/// Returns the number of an axis, from 0; NaN where it has none.
-double number_at(const std::vector<std::string>& words, std::size_t axis) {
-  const auto number = axis < words.size() ? number_of_word<double>(words[axis]) : std::nullopt;
-  return number.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 void note_kinds(const Header& header, std::size_t components_axis, const Note& note) {

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <fstream>
+#include <limits>
 #include <system_error>
 #include <utility>
 
@@ -76,6 +77,16 @@ std::vector<std::string> axes_of(const std::string& value) {
     at = end == std::string::npos ? end : value.find_first_not_of(blanks, end);
   }
   return axes;
+}
+
+std::vector<std::string> words_of(const Header& header, std::string_view field) {
+  const Line* line = find_field(header, field);
+  return line == nullptr ? std::vector<std::string>() : axes_of(line->value);
+}
+
+double number_at(const std::vector<std::string>& words, std::size_t axis) {
+  const auto number = axis < words.size() ? number_of_word<double>(words[axis]) : std::nullopt;
+  return number.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 std::string kind_of(const Header& header, std::size_t axis) {

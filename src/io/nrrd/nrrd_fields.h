@@ -36,6 +36,10 @@ Line parse_line(std::string text);
 const Line* find_field(const Header& header, std::string_view field);
 /// Returns the values of a field axis by axis, in small letters: words, or vectors in parentheses.
 std::vector<std::string> axes_of(const std::string& value);
+/// Returns those of the field of this name; empty where there is none.
+std::vector<std::string> words_of(const Header& header, std::string_view field);
+/// Returns the number of an axis, from 0, among such words; NaN where it has none.
+double number_at(const std::vector<std::string>& words, std::size_t axis);
 /// Returns the kind of an axis, from 1; empty where it is not known.
 std::string kind_of(const Header& header, std::size_t axis);
 /// Returns the number of axes that the sizes name.

@@ -19,17 +19,6 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<std::string> words_of(const Header& header, std::string_view field) {
-  const Line* line = find_field(header, field);
-  return line == nullptr ? std::vector<std::string>() : axes_of(line->value);
-}
-
-/// Returns the number of an axis, from 0; NaN where it has none.
-double number_of(const std::vector<std::string>& words, std::size_t axis) {
-  if (axis >= words.size()) return none;
-  return number_of_word<double>(words[axis]).value_or(none);
-}
-
 /// Returns the fourth number of a vector "(0,0,0,2)"; NaN where it has none.
 double fourth_of(std::string_view vector) {
   if (!vector.starts_with('(') || !vector.ends_with(')')) return none;
@@ -111,9 +100,9 @@ VolumeSteps steps_of(const Header& header, std::size_t components_axis) {
   if (!numbered.times.empty()) return numbered;
   if (kind_of(header, axis + 1) != "time" && !runs_in_time) return {};
   VolumeSteps steps;
-  const double spacing = number_of(words_of(header, "spacings"), axis),
-               least = number_of(words_of(header, "axismins"), axis),
-               most = number_of(words_of(header, "axismaxs"), axis);
+  const double spacing = number_at(words_of(header, "spacings"), axis),
+               least = number_at(words_of(header, "axismins"), axis),
+               most = number_at(words_of(header, "axismaxs"), axis);
   const bool has_range = std::isfinite(least) && std::isfinite(most) && most != least;
   double first = std::isfinite(least) ? least : 0, step = 1;
   const std::vector<std::string> centerings = words_of(header, "centerings");

@@ -13,7 +13,7 @@ namespace pellucid {
 namespace {
 
 /// The C of "ARRAY:C", which is taken off.
-std::optional<int> take_component(std::string_view& text) {
+std::optional<int> take_number_behind(std::string_view& text) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string_view::npos) return std::nullopt;
   int component = 0;
@@ -35,7 +35,7 @@ MeshArrayChoice parse_mesh_array(std::string_view text) {
     choice.name = rest.substr(0, equals);
     rest.remove_prefix(equals + 1);
   }
-  choice.component = take_component(rest);
+  choice.component = take_number_behind(rest);
   choice.array = rest;
   if (choice.array.empty()) {
     throw Error(what + "expected ARRAY, ARRAY:COMPONENT or NAME=ARRAY, as in speed=V or V:0");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <optional>
 #include <string>
@@ -43,6 +44,11 @@ bool any_word(std::string_view words, const Take& take) {
     words.remove_prefix(std::min(end + 1, words.size()));
   }
   return false;
+}
+
+template <std::size_t count>
+bool is_among(const std::array<std::string_view, count>& list, std::string_view text) {
+  return std::ranges::find(list, text) != list.end();
 }
 
 /// Returns the number that a whole word is, "+" allowed; nothing where it is none.

@@ -13,14 +13,11 @@
 #include "files/input_file.h"
 #include "files/mapped_file.h"
 #include "pellucid/scene/error.h"
+#include "vtk/xml/vtk_xml_numbers.h"
 
 namespace pellucid {
 
 namespace {
-
-bool is_space(char c) {
-  return c == ' ' || (c >= '\t' && c <= '\r');
-}
 
 char lower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -28,16 +25,6 @@ char lower(char c) {
 
 bool equal_words(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](char x, char y) { return lower(x) == lower(y); });
-}
-
-/// Returns the next word, and what stands behind it.
-std::string_view take_word(std::string_view& rest) {
-  while (!rest.empty() && is_space(rest.front())) rest.remove_prefix(1);
-  std::size_t length = 0;
-  while (length < rest.size() && !is_space(rest[length])) ++length;
-  const std::string_view word = rest.substr(0, length);
-  rest.remove_prefix(length);
-  return word;
 }
 
 std::optional<std::int64_t> take_integer(std::string_view& rest) {

@@ -12,8 +12,6 @@ namespace pellucid {
 
 namespace {
 
-constexpr const char* damaged = "; the file is cut off or damaged";
-
 /// vtkCellType.h, of VTK 9: the types that have a volume.
 enum VtkType : int {
   tetra = 10,
@@ -176,7 +174,7 @@ void VtkCells::add_points(std::span<const std::int64_t> points) {
   for (const std::int64_t point : points) {
     if (point < 0 || point >= count) {
       throw Error("cell " + std::to_string(cell_) + " has the point " + std::to_string(point) +
-                  ", but there are " + std::to_string(count) + damaged);
+                  ", but there are " + std::to_string(count) + damaged_file);
     }
     block_.corners.push_back(static_cast<std::int32_t>(point));
   }
@@ -186,7 +184,7 @@ void VtkCells::add_shape(CellShape shape, std::span<const std::int64_t> points) 
   const auto needed = static_cast<std::size_t>(point_count(shape));
   if (points.size() < needed) {
     throw Error("cell " + std::to_string(cell_) + " has " + std::to_string(points.size()) +
-                " points, but one of its shape has " + std::to_string(needed) + damaged);
+                " points, but one of its shape has " + std::to_string(needed) + damaged_file);
   }
   if (points.size() > needed) {
     if (file_.trimmed_cells++ == 0) {
@@ -235,7 +233,7 @@ void VtkCells::add_lagrange(CellShape shape, const VtkCell& given) {
 void VtkCells::add_prism(std::span<const std::int64_t> points, std::size_t sides) {
   if (points.size() < 2 * sides) {
     throw Error("cell " + std::to_string(cell_) + " has " + std::to_string(points.size()) +
-                " points, but one of its shape has " + std::to_string(2 * sides) + damaged);
+                " points, but one of its shape has " + std::to_string(2 * sides) + damaged_file);
   }
   add_points(points.first(2 * sides));  // the two polygons, one after the other
   std::vector<std::int32_t>& layout = block_.layouts;
@@ -262,14 +260,14 @@ void VtkCells::add_polyhedron(const VtkCell& given) {
         "are not read: cut its cells into tetrahedra first (ParaView: Tetrahedralize)");
   }
   const auto take = [&] {
-    if (rest.empty()) fail(std::string("has faces that are cut off") + damaged);
+    if (rest.empty()) fail(std::string("has faces that are cut off") + damaged_file);
     const std::int64_t number = rest.front();
     rest = rest.subspan(1);
     return number;
   };
   const std::int64_t faces = take();
   if (faces < 0 || static_cast<std::uint64_t>(faces) > rest.size()) {
-    fail("says that it has " + std::to_string(faces) + " faces" + damaged);
+    fail("says that it has " + std::to_string(faces) + " faces" + damaged_file);
   }
   const std::size_t head = block_.layouts.size();
   block_.layouts.insert(block_.layouts.end(), {0, static_cast<std::int32_t>(faces)});
@@ -277,7 +275,7 @@ void VtkCells::add_polyhedron(const VtkCell& given) {
   for (std::int64_t face = 0; face < faces; ++face) {
     const std::int64_t count = take();
     if (count < 3 || static_cast<std::uint64_t>(count) > rest.size()) {
-      fail("has a face of " + std::to_string(count) + " points" + damaged);
+      fail("has a face of " + std::to_string(count) + " points" + damaged_file);
     }
     add_points(rest.first(static_cast<std::size_t>(count)));
     rest = rest.subspan(static_cast<std::size_t>(count));

@@ -12,6 +12,9 @@
 
 namespace pellucid {
 
+/// End of a message on parts of a file that contradict each other.
+inline constexpr const char* damaged_file = "; the file is cut off or damaged";
+
 /// A cell as VTK's files have it; nothing of it is checked.
 struct VtkCell {
   int type = 0;  ///< VTK's number

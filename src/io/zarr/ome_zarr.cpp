@@ -10,6 +10,7 @@
 
 #include "pellucid/scene/error.h"
 #include "text/printable.h"
+#include "zarr_metadata.h"
 
 namespace pellucid {
 
@@ -17,7 +18,7 @@ using scene_json::Node;
 
 namespace {
 
-constexpr std::size_t max_axes = 32, max_levels = 64, max_names = 4096;
+constexpr std::size_t max_levels = 64, max_names = 4096;
 constexpr int deepest_sequence = 8;
 
 std::string text_of(const Node& node, const char* key) {
@@ -26,7 +27,7 @@ std::string text_of(const Node& node, const char* key) {
 }
 
 std::vector<OmeAxis> axes_of(const Node& list) {
-  if (list.array_size() > max_axes) list.fail("lists more than 32 axes");
+  if (list.array_size() > max_zarr_axes) list.fail("lists more than 32 axes");
   std::vector<OmeAxis> axes;
   for (std::size_t i = 0; i < list.array_size(); ++i) {
     const Node axis = list.element(i);

@@ -25,12 +25,11 @@ using scene_json::Node;
 
 namespace {
 
-constexpr std::size_t max_axes = 32;
 constexpr std::int64_t longest_axis = std::int64_t{1} << 52;
 constexpr std::size_t deepest_shards = 4;
 
 std::vector<std::int64_t> sides_of(const Node& list, std::int64_t least) {
-  if (list.array_size() > max_axes) list.fail("has more than 32 numbers");
+  if (list.array_size() > max_zarr_axes) list.fail("has more than 32 numbers");
   std::vector<std::int64_t> sides;
   for (std::size_t i = 0; i < list.array_size(); ++i) {
     sides.push_back(list.element(i).integer(least, longest_axis));
@@ -350,12 +349,12 @@ void check_extensions(const Node& metadata) {
   }
 }
 
+}  // namespace
+
 const Node& object(const Node& node) {
   if (!node.is_object()) node.fail("must be an object");
   return node;
 }
-
-}  // namespace
 
 ZarrArray parse_zarr_2(const Node& metadata) {
   ZarrArray array;

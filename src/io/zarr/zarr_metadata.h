@@ -78,6 +78,11 @@ struct ZarrArray {
   std::vector<std::string> dimension_names;  ///< "" where one has no name; empty: none has
 };
 
+inline constexpr std::size_t max_zarr_axes = 32;
+
+/// Returns the node. Fails unless it is an object.
+const scene_json::Node& object(const scene_json::Node& node);
+
 /// A group or an array of a store.
 struct ZarrNode {
   std::filesystem::path folder;

@@ -16,11 +16,6 @@ using scene_json::Node;
 
 namespace {
 
-const Node& object(const Node& node) {
-  if (!node.is_object()) node.fail("must be an object");
-  return node;
-}
-
 JsonFile attributes_of(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error)) return {nlohmann::json::object(), file.string()};

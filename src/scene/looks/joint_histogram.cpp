@@ -15,14 +15,14 @@
 namespace pellucid {
 namespace {
 
-[[noreturn]] void fail(const std::string& what) {
+[[noreturn]] void refuse_histogram(const std::string& what) {
   throw Error("histogram: " + what);
 }
 
 void check_bins(int bins) {
   if (bins < 1 || bins > max_histogram_bins) {
-    fail("bins is " + std::to_string(bins) + ", but must be from 1 to " +
-         std::to_string(max_histogram_bins));
+    refuse_histogram("bins is " + std::to_string(bins) + ", but must be from 1 to " +
+                     std::to_string(max_histogram_bins));
   }
 }
 
@@ -31,13 +31,13 @@ std::size_t check_axes(const std::vector<HistogramAxis>& axes) {
   for (const HistogramAxis& axis : axes) {
     check_bins(axis.bins);
     if (!(axis.lower < axis.upper) || !std::isfinite(axis.upper - axis.lower)) {
-      fail("the axis from " + number(axis.lower) + " to " + number(axis.upper) +
-           " is empty or endless; give two finite values, the lower one first");
+      refuse_histogram("the axis from " + number(axis.lower) + " to " + number(axis.upper) +
+                       " is empty or endless; give two finite values, the lower one first");
     }
     all *= static_cast<std::size_t>(axis.bins);
     if (all > static_cast<std::size_t>(max_histogram_bins)) {
-      fail("there are more than " + std::to_string(max_histogram_bins) +
-           " bins in all; give fewer for each axis");
+      refuse_histogram("there are more than " + std::to_string(max_histogram_bins) +
+                       " bins in all; give fewer for each axis");
     }
   }
   return all;
@@ -143,17 +143,17 @@ JointHistogram joint_histogram(const Channels& channels, const std::vector<int>&
                                const std::vector<HistogramAxis>& axes,
                                const ParallelFor& parallel) {
   if (which.empty() || which.size() > static_cast<std::size_t>(max_histogram_axes)) {
-    fail("it has " + std::to_string(which.size()) + " channels, but must have from 1 to " +
-         std::to_string(max_histogram_axes));
+    refuse_histogram("it has " + std::to_string(which.size()) +
+                     " channels, but must have from 1 to " + std::to_string(max_histogram_axes));
   }
   if (axes.size() != which.size()) {
-    fail("it has " + std::to_string(which.size()) + " channels and " + std::to_string(axes.size()) +
-         " axes; give one for each");
+    refuse_histogram("it has " + std::to_string(which.size()) + " channels and " +
+                     std::to_string(axes.size()) + " axes; give one for each");
   }
   for (const int c : which) {
     if (c < 0 || c >= channels.count()) {
-      fail("it looks at channel " + std::to_string(c) + ", but there are " +
-           std::to_string(channels.count()) + ", counted from 0");
+      refuse_histogram("it looks at channel " + std::to_string(c) + ", but there are " +
+                       std::to_string(channels.count()) + ", counted from 0");
     }
   }
   JointHistogram all;

@@ -19,31 +19,33 @@ namespace {
 
 using Matrix = std::vector<std::vector<double>>;
 
-[[noreturn]] void fail(const std::string& what) {
+[[noreturn]] void refuse_mixture(const std::string& what) {
   throw Error("mixture: " + what);
 }
 
 void check(const WeightedPoints& points, int components, const std::vector<double>& floor) {
   if (points.dimensions < 1 || floor.size() != static_cast<std::size_t>(points.dimensions) ||
       points.coordinates.size() != points.count() * floor.size()) {
-    fail("sizes do not agree; give `dimensions` coordinates per weight and as many floors");
+    refuse_mixture(
+        "sizes do not agree; give `dimensions` coordinates per weight and as many floors");
   }
   if (components < 1 || components > max_components) {
-    fail("it has " + std::to_string(components) + " components, but must have from 1 to " +
-         std::to_string(max_components));
+    refuse_mixture("it has " + std::to_string(components) +
+                   " components, but must have from 1 to " + std::to_string(max_components));
   }
   const auto finite = [](double x) { return std::isfinite(x); };
   const auto at_least_zero = [](double x) { return x >= 0 && std::isfinite(x); };
   if (!std::all_of(points.coordinates.begin(), points.coordinates.end(), finite) ||
       !std::all_of(points.weights.begin(), points.weights.end(), at_least_zero)) {
-    fail("a coordinate is not finite, or a weight not a number >= 0; leave such points out");
+    refuse_mixture(
+        "a coordinate is not finite, or a weight not a number >= 0; leave such points out");
   }
   if (!std::all_of(floor.begin(), floor.end(),
                    [](double x) { return x > 0 && std::isfinite(x); })) {
-    fail("a floor is not a positive number");
+    refuse_mixture("a floor is not a positive number");
   }
   if (!std::any_of(points.weights.begin(), points.weights.end(), [](double w) { return w > 0; })) {
-    fail("no point has a weight; give some data");
+    refuse_mixture("no point has a weight; give some data");
   }
 }
 
@@ -195,7 +197,7 @@ MixtureFit fit_mixture(const WeightedPoints& points, int least, int most,
                        const std::vector<double>& floor, const ParallelFor& parallel) {
   check(points, least, floor);
   check(points, most, floor);
-  if (least > most) fail("there is no number from least to most; give least <= most");
+  if (least > most) refuse_mixture("there is no number from least to most; give least <= most");
   const std::vector<MixtureFit> fits = Fitter(points, floor).fits(least, most, parallel);
   return *std::ranges::min_element(fits, {}, &MixtureFit::bic);
 }

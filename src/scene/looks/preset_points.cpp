@@ -38,49 +38,49 @@ std::vector<PresetPoint> mr_t1_brain() {
 }
 
 // Moreland 2009, table "cool to warm", every fourth of its 33 colors.
-constexpr std::array<Rgb<double>, 9> cool_to_warm{{{59, 76, 192},
-                                                   {98, 130, 234},
-                                                   {141, 176, 254},
-                                                   {184, 208, 249},
-                                                   {221, 221, 221},
-                                                   {245, 196, 173},
-                                                   {244, 154, 123},
-                                                   {222, 96, 77},
-                                                   {180, 4, 38}}};
+constexpr std::array<Rgb<double>, 9> diverging_colors{{{59, 76, 192},
+                                                       {98, 130, 234},
+                                                       {141, 176, 254},
+                                                       {184, 208, 249},
+                                                       {221, 221, 221},
+                                                       {245, 196, 173},
+                                                       {244, 154, 123},
+                                                       {222, 96, 77},
+                                                       {180, 4, 38}}};
 
 std::vector<PresetPoint> simulation_diverging() {
   std::vector<PresetPoint> points;
-  for (std::size_t i = 0; i < cool_to_warm.size(); ++i) {
-    const double at = static_cast<double>(i) / (cool_to_warm.size() - 1);
+  for (std::size_t i = 0; i < diverging_colors.size(); ++i) {
+    const double at = static_cast<double>(i) / (diverging_colors.size() - 1);
     const double away = std::abs(2 * at - 1);
-    points.push_back({at, 0.05 + 4 * std::pow(away, 2.5), cool_to_warm[i] * (1 / 255.0)});
+    points.push_back({at, 0.05 + 4 * std::pow(away, 2.5), diverging_colors[i] * (1 / 255.0)});
   }
   return points;
 }
 
 // matplotlib's viridis, six colors from its dark to its bright end.
-constexpr std::array<Rgb<double>, 6> viridis{{{65, 68, 135},
-                                              {42, 120, 142},
-                                              {34, 168, 132},
-                                              {122, 209, 81},
-                                              {210, 226, 27},
-                                              {253, 231, 37}}};
+constexpr std::array<Rgb<double>, 6> isosurface_colors{{{65, 68, 135},
+                                                        {42, 120, 142},
+                                                        {34, 168, 132},
+                                                        {122, 209, 81},
+                                                        {210, 226, 27},
+                                                        {253, 231, 37}}};
 
 std::vector<PresetPoint> simulation_isosurfaces() {
-  std::vector<PresetPoint> points{{0, 0, viridis.front() * (1 / 255.0)}};
+  std::vector<PresetPoint> points{{0, 0, isosurface_colors.front() * (1 / 255.0)}};
   constexpr double half_width = 0.012;
-  for (std::size_t i = 0; i < viridis.size(); ++i) {
+  for (std::size_t i = 0; i < isosurface_colors.size(); ++i) {
     const double middle = (static_cast<double>(i) + 0.8) / 6.4;
-    const Rgb<double> color = viridis[i] * (1 / 255.0);
+    const Rgb<double> color = isosurface_colors[i] * (1 / 255.0);
     points.push_back({middle - half_width, 0, color});
     points.push_back({middle, 20 + 20 * static_cast<double>(i), color});
     points.push_back({middle + half_width, 0, color});
   }
-  points.push_back({1, 0, viridis.back() * (1 / 255.0)});
+  points.push_back({1, 0, isosurface_colors.back() * (1 / 255.0)});
   return points;
 }
 
-std::vector<PresetPoint> x_ray() {
+std::vector<PresetPoint> x_ray_points() {
   return {{0, 0, {0.90, 0.95, 1}}, {1, 1.5, {0.90, 0.95, 1}}};
 }
 
@@ -102,7 +102,7 @@ constexpr std::array<NamedPreset, 7> every_preset{
      {"simulation-isosurfaces", "any scalar, relative to its range: six thin shells",
       PresetScale::range, simulation_isosurfaces, false},
      {"x-ray", "any scalar, relative to its range: density along the ray, as on a film",
-      PresetScale::range, x_ray, false}}};
+      PresetScale::range, x_ray_points, false}}};
 
 }  // namespace
 

@@ -19,14 +19,14 @@
 namespace pellucid {
 namespace {
 
-[[noreturn]] void fail(const std::string& what) {
+[[noreturn]] void refuse_suggestion(const std::string& what) {
   throw Error("suggest: " + what);
 }
 
 void check_channel(const Channels& channels, int c) {
   if (c >= 0 && c < channels.count()) return;
-  fail("it looks at channel " + std::to_string(c) + ", but there are " +
-       std::to_string(channels.count()) + ", counted from 0");
+  refuse_suggestion("it looks at channel " + std::to_string(c) + ", but there are " +
+                    std::to_string(channels.count()) + ", counted from 0");
 }
 
 /// A tenth of the work is in the survey, half is in a fit.
@@ -68,7 +68,7 @@ Survey survey(const Channels& channels, const std::vector<int>& which, int bins,
   survey.bins = occupied_bins(survey.histogram);
   for (const double count : survey.bins.counts) survey.points += count;
   if (survey.bins.size() == 0) {
-    fail("no data point has a number in every channel; choose channels that have");
+    refuse_suggestion("no data point has a number in every channel; choose channels that have");
   }
   tell(control, after_survey);
   return survey;
@@ -255,18 +255,20 @@ std::vector<GaussianPrimitive> suggest_mixture(const Channels& channels,
                                                const SuggestControl& control) {
   const std::size_t n = which.size();
   if (n < 1 || n > static_cast<std::size_t>(max_suggested_channels)) {
-    fail("it looks at " + std::to_string(n) + " channels, but can look at 1 to 3; choose those");
+    refuse_suggestion("it looks at " + std::to_string(n) +
+                      " channels, but can look at 1 to 3; choose those");
   }
   for (std::size_t i = 0; i < n; ++i) {
     check_channel(channels, which[i]);
     if (std::find(which.begin(), which.begin() + static_cast<std::ptrdiff_t>(i), which[i]) !=
         which.begin() + static_cast<std::ptrdiff_t>(i)) {
-      fail("it looks at channel " + std::to_string(which[i]) + " twice; name each once");
+      refuse_suggestion("it looks at channel " + std::to_string(which[i]) +
+                        " twice; name each once");
     }
   }
   if (primitives < 0 || primitives > max_suggested_primitives) {
-    fail("primitives is " + std::to_string(primitives) + ", but must be from 1 to " +
-         std::to_string(max_suggested_primitives) + ", or 0 for as many as are found");
+    refuse_suggestion("primitives is " + std::to_string(primitives) + ", but must be from 1 to " +
+                      std::to_string(max_suggested_primitives) + ", or 0 for as many as are found");
   }
   constexpr std::array<int, max_suggested_channels> bins{256, 96, 40};
   const Survey data = survey(channels, which, bins[n - 1], parallel, control);

@@ -35,7 +35,6 @@ namespace pellucid {
 
 namespace {
 
-constexpr const char* damaged = "; the file is cut off or damaged";
 /// Older files have numbers of layers in place of flags: 0 is no ghost.
 constexpr const char* ghost_levels = "vtkGhostLevels";
 
@@ -130,7 +129,7 @@ void gather_arrays(vtkDataSetAttributes& data, Centering centering, vtkIdType co
     if (array->GetNumberOfTuples() != count) {
       throw Error("the array \"" + name + "\" has " + std::to_string(array->GetNumberOfTuples()) +
                   " values, but there are " + std::to_string(count) +
-                  (centering == Centering::point ? " points" : " cells") + damaged);
+                  (centering == Centering::point ? " points" : " cells") + damaged_file);
     }
     if (const std::size_t rounded = count_rounded(*array); rounded > 0) {
       notes.push_back(std::to_string(rounded) + " of the whole numbers of \"" + name +
@@ -158,7 +157,7 @@ void gather_points(vtkPointSet& set, UnstructuredGrid& block) {
 
 void check_count(vtkDataArray* ghosts, vtkIdType count, const char* of) {
   if (ghosts == nullptr || ghosts->GetNumberOfValues() == count) return;
-  throw Error(std::string("the number of ghost flags is not that of the ") + of + damaged);
+  throw Error(std::string("the number of ghost flags is not that of the ") + of + damaged_file);
 }
 
 /// Returns the array of flags; null: there is none. VTK's own pointer to it is not set where it
@@ -196,7 +195,7 @@ class CellLists {
     count_ = cells == nullptr ? 0 : cells->GetNumberOfCells();
     if (count_ == 0) return;
     if (types_ == nullptr || types_->GetNumberOfValues() != count_) {
-      throw Error(std::string("the number of types is not that of the cells") + damaged);
+      throw Error(std::string("the number of types is not that of the cells") + damaged_file);
     }
     // Shared with the grid where they are of this type.
     const auto as_ids = [](vtkDataArray* from) {
@@ -207,13 +206,13 @@ class CellLists {
     offsets_ = as_ids(cells->GetOffsetsArray());
     corners_ = as_ids(cells->GetConnectivityArray());
     if (offsets_->GetNumberOfValues() != count_ + 1) {
-      throw Error(std::string("the cells are not as many as their offsets") + damaged);
+      throw Error(std::string("the cells are not as many as their offsets") + damaged_file);
     }
     faces_ = grid.GetFaces();
     face_begins_ = grid.GetFaceLocations();
     if (faces_ == nullptr || face_begins_ == nullptr) return;
     if (face_begins_->GetNumberOfValues() != count_) {
-      throw Error(std::string("the cells are not as many as their lists of faces") + damaged);
+      throw Error(std::string("the cells are not as many as their lists of faces") + damaged_file);
     }
   }
 
@@ -224,7 +223,7 @@ class CellLists {
   std::span<const std::int64_t> corners(vtkIdType cell) {
     const vtkIdType begin = offsets_->GetValue(cell), end = offsets_->GetValue(cell + 1);
     if (begin < 0 || end < begin || end > corners_->GetNumberOfValues()) {
-      throw Error("cell " + std::to_string(cell) + " is not where its offset says" + damaged);
+      throw Error("cell " + std::to_string(cell) + " is not where its offset says" + damaged_file);
     }
     corners_of_cell_.assign(corners_->GetPointer(0) + begin, corners_->GetPointer(0) + end);
     return corners_of_cell_;
@@ -249,7 +248,7 @@ class CellLists {
     // Lists that lie upon each other would be more than the file has.
     face_values_ += end - begin;
     if (face_values_ > count) {
-      throw Error(std::string("the lists of faces overlap") + damaged);
+      throw Error(std::string("the lists of faces overlap") + damaged_file);
     }
     faces_of_cell_.assign(list + begin, list + end);
     return faces_of_cell_;
@@ -335,7 +334,7 @@ std::vector<vtkIdType> gather_cells(vtkStructuredGrid& grid, std::size_t first_n
   grid.GetDimensions(dimensions);
   std::int64_t points = 1, cells = 1;
   for (const int side : dimensions) {
-    if (side < 0) throw Error(std::string("a grid has a negative side") + damaged);
+    if (side < 0) throw Error(std::string("a grid has a negative side") + damaged_file);
     // Both factors are below 2^31, and so is the product before.
     points *= side;
     cells *= side > 1 ? side - 1 : 0;
@@ -345,7 +344,7 @@ std::vector<vtkIdType> gather_cells(vtkStructuredGrid& grid, std::size_t first_n
   if (points != count) {
     throw Error("a grid of " + std::to_string(dimensions[0]) + " x " +
                 std::to_string(dimensions[1]) + " x " + std::to_string(dimensions[2]) +
-                " points has " + std::to_string(count) + damaged);
+                " points has " + std::to_string(count) + damaged_file);
   }
   std::vector<vtkIdType> kept;
   if (cells == 0) {

@@ -29,6 +29,7 @@
 
 #include "pellucid/scene/error.h"
 #include "process/module_answer.h"
+#include "vtk/vtk_cells.h"
 #include "vtk/vtk_module.h"
 #include "vtk_compare_pieces.h"
 #include "vtk_messages.h"
@@ -39,7 +40,6 @@ namespace pellucid {
 
 namespace {
 
-constexpr const char* damaged = "; the file is cut off or damaged";
 constexpr const char* remedy = "crop or reduce the volume";
 constexpr const char* no_times = "the file has no steps in time; leave the time out";
 
@@ -149,7 +149,7 @@ std::vector<std::uint8_t> ghosts_of(vtkDataSetAttributes& data, vtkIdType count)
   auto* const ghosts = vtkUnsignedCharArray::SafeDownCast(data.GetArray(ghost_name().c_str()));
   if (ghosts == nullptr) return {};
   if (ghosts->GetNumberOfValues() != count) {
-    throw Error(std::string("the number of ghost flags is not that of the values") + damaged);
+    throw Error(std::string("the number of ghost flags is not that of the values") + damaged_file);
   }
   return {ghosts->GetPointer(0), ghosts->GetPointer(0) + count};
 }
@@ -163,7 +163,7 @@ void take_values(vtkDataSet& set, const std::vector<Entry>& entries, VtkVolume& 
       throw Error("the array \"" + entry.name + "\" has " +
                   std::to_string(array == nullptr ? 0 : array->GetNumberOfTuples()) +
                   " values, but there are " + std::to_string(count) +
-                  (point ? " points" : " cells") + damaged);
+                  (point ? " points" : " cells") + damaged_file);
     }
     std::string rounded;
     volume.arrays.push_back({entry.name, entry.centering, array->GetNumberOfComponents(),
@@ -209,7 +209,7 @@ void take_grid(vtkRectilinearGrid& grid, VtkVolume& volume) {
   for (std::size_t a = 0; a < 3; ++a) {
     if (axes[a] == nullptr || axes[a]->GetNumberOfTuples() != volume.points[a]) {
       throw Error("the positions along " + std::string(1, "xyz"[a]) +
-                  " are not as many as its points" + damaged);
+                  " are not as many as its points" + damaged_file);
     }
     std::vector<double>& positions = volume.positions[a];
     for (int i = 0; i < volume.points[a]; ++i) {
@@ -296,7 +296,7 @@ void read_part(Reader& reader, const std::vector<Entry>& entries, const Extent& 
   check(reader, messages);
   vtkImageData* const image = vtkImageData::SafeDownCast(reader.GetOutput());
   if (image == nullptr || !std::equal(extent.begin(), extent.end(), image->GetExtent())) {
-    throw Error("VTK does not give the part that is asked for" + std::string(damaged));
+    throw Error("VTK does not give the part that is asked for" + std::string(damaged_file));
   }
   take_grid(*image, volume);
   take_values(*image, entries, volume);
