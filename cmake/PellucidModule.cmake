@@ -11,8 +11,12 @@ target_compile_options(pellucid_build_flags INTERFACE
   -ffp-contract=off
   # Nothing here reads errno or the floating-point exception flags; values do not change.
   -fno-math-errno -fno-trapping-math
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wold-style-cast
+  -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wold-style-cast
   -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wunused -Wformat=2
+  # Where several sources are compiled as one, names of one may hide those of another, and types of
+  # anonymous namespaces are not those of the main file.
+  $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow>
+  $<$<AND:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>
   $<$<CXX_COMPILER_ID:GNU>:-Wduplicated-cond -Wlogical-op -Wuseless-cast>
   # To clang it is also double to long double, which the reference renderer is written in.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-double-promotion>
@@ -68,6 +72,40 @@ function(pellucid_precompiled_headers target)
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 endfunction()
 
+option(PELLUCID_UNITY "Compile several sources as one" ${PROJECT_IS_TOP_LEVEL})
+
+# pellucid_unity(TARGET [BATCH n]): with PELLUCID_UNITY the sources of TARGET that are in the groups
+# of pellucid_first_sources() are compiled together, or n at a time in their order. What a source
+# declares in an anonymous namespace must have another name than in the others of its group. They
+# must still include what they use: the preset of clang compiles each by itself.
+function(pellucid_unity target)
+  cmake_parse_arguments(arg "" "BATCH" "" ${ARGN})
+  if(NOT PELLUCID_UNITY)
+    return()
+  endif()
+  if(arg_BATCH)
+    set_target_properties(${target} PROPERTIES
+      UNITY_BUILD ON UNITY_BUILD_MODE BATCH UNITY_BUILD_BATCH_SIZE ${arg_BATCH})
+  else()
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  endif()
+endfunction()
+
+# Groups of at most eight sources of one folder, whose names begin with `part`. A new source changes
+# the groups of its folder alone.
+function(_pellucid_unity_groups part)
+  foreach(source IN LISTS ARGN)
+    cmake_path(GET source PARENT_PATH folder)
+    string(MAKE_C_IDENTIFIER "${part}_${folder}" name)
+    if(NOT DEFINED ${name}_size)
+      set(${name}_size 0)
+    endif()
+    math(EXPR group "${${name}_size} / 8")
+    math(EXPR ${name}_size "${${name}_size} + 1")
+    set_property(SOURCE "${source}" PROPERTY UNITY_GROUP "${name}_${group}")
+  endforeach()
+endfunction()
+
 # What the functions below declare is kept in global properties, from which the package
 # (PellucidInstall) and the test of the include order (tests/architecture) are made:
 #   PELLUCID_MODULES            names, in the order of declaration
@@ -84,7 +122,8 @@ endfunction()
 # pellucid_first_sources(RESULT TARGET SOURCES file... [LATER file...] [INSTEAD file...]
 #                        [NOT_WEB file...] [WEB file...]): the files of a target. LATER: those that
 # no first picture needs; with PELLUCID_FIRST_PICTURE the files INSTEAD stand in for them. Both
-# builds compile SOURCES alike, so that the whole one takes over their objects. NOT_WEB: those of
+# builds compile SOURCES alike, in the same groups (pellucid_unity()), so that the whole one takes
+# over their objects. NOT_WEB: those of
 # SOURCES and LATER that WebAssembly does without, with the files WEB in their place.
 # tests/first_picture links what is left without LATER, which is kept in global properties:
 #   PELLUCID_FIRST_TARGETS      the targets
@@ -95,9 +134,12 @@ function(pellucid_first_sources result target)
   if(PELLUCID_WEB)
     set(all ${arg_SOURCES} ${arg_LATER} ${arg_WEB})
     list(REMOVE_ITEM all ${arg_NOT_WEB} "")
+    _pellucid_unity_groups(web ${all})
     set(${result} ${all} PARENT_SCOPE)
     return()
   endif()
+  _pellucid_unity_groups(first ${arg_SOURCES})
+  _pellucid_unity_groups(later ${arg_LATER})
   if(PELLUCID_FIRST_PICTURE)
     set(${result} ${arg_SOURCES} ${arg_INSTEAD} PARENT_SCOPE)
   else()

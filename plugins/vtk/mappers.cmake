@@ -20,8 +20,7 @@ function(pellucid_vtk_mappers target)
   list(TRANSFORM sources PREPEND "${_pellucid_vtk_folder}/")
   add_library(${target} OBJECT
     ${sources}
-    # Arrays and cells of VTK are taken as by the readers of its files.
-    "${PROJECT_SOURCE_DIR}/src/io/vtk/vtk_cells.cpp"
+    # Arrays of VTK are taken as by the readers of its files.
     "${PROJECT_SOURCE_DIR}/src/io/vtk/module/vtk_gather.cpp"
     "${PROJECT_SOURCE_DIR}/src/io/vtk/module/vtk_values.cpp")
   set_target_properties(${target} PROPERTIES
@@ -29,6 +28,7 @@ function(pellucid_vtk_mappers target)
     CXX_EXTENSIONS OFF
     CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON)
+  pellucid_unity(${target} BATCH 5)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_include_directories(${target}
     PUBLIC "${_pellucid_vtk_folder}" "${PROJECT_SOURCE_DIR}/src/io")

@@ -35,6 +35,8 @@ if(PELLUCID_WITH_CAIRO)
     pellucid_module(pellucid_cairo
       SOURCES images/cairo_draw.cpp images/cairo_figure.cpp images/figure_composer.cpp
       LIBRARIES "${PELLUCID_CAIRO_LIBRARY}")
+    # Legends and figures have lengths of the same names.
+    set_target_properties(pellucid_cairo PROPERTIES UNITY_BUILD OFF)
     target_include_directories(pellucid_cairo SYSTEM PRIVATE "${PELLUCID_CAIRO_INCLUDE_DIR}")
   elseif(NOT PELLUCID_WITH_CAIRO STREQUAL "AUTO")
     message(FATAL_ERROR "Cairo was not found; set PELLUCID_WITH_CAIRO=OFF to build without")
