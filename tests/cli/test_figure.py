@@ -339,6 +339,21 @@ LOOKUP_TABLE default
         self.options[3] = "3x5"
         self.assertGreater(png(self.figure("a.png"))[0], 900)
 
+    def test_bars_that_are_higher_than_the_picture_end_above_the_caption(self):
+        bars = 6
+        layers = [{"field": {"file": "ramp.npy"}, "transfer_function": OPAQUE}] * bars
+        self.write("bars.json", json.dumps({
+            "pellucid": 2, "layers": layers, "image": {"width": 60, "height": 50}}))
+        result = self.run_program("render", "bars.json", "--figure", "a.svg")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        svg = Svg(self.read("a.svg").decode())
+        strips = [image for image in svg.images if image[1] == 1024]
+        self.assertGreaterEqual(len(strips), bars)
+        caption = max(y for _, y, _ in svg.glyphs)
+        self.assertLess(max(image[5] for image in strips), caption - 6)
+        self.assertLess(caption, svg.size[1])
+        self.assertGreaterEqual(min(image[3] for image in strips), 0)
+
     def test_refuses_what_is_too_large_before_rendering(self):
         self.fail_with("figure: Cairo draws pictures of at most 32767", "render", "ramp.npy",
                        "--size", "40000x40000", "--figure", "a.pdf")

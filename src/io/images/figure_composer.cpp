@@ -141,7 +141,7 @@ class Composer {
     return made.panels.empty() ? 0 : column + beside_picture;
   }
 
-  /// Returns at most three lines, of which the last one may end with an ellipsis.
+  /// Returns the first three lines at most. Of more the third ends with an ellipsis.
   std::vector<std::string> few_lines(const std::string& text, double most) const {
     constexpr std::size_t largest = 3;
     std::vector<std::string> lines = pen_.lines(text, most);
@@ -193,8 +193,8 @@ class Composer {
   }
 
   void draw_legends(const Layout& layout) {
-    double y = layout.stage.y + std::max(0.0, (layout.stage.height - legends_height(layout)) / 2);
-    y = std::max(y, margin);
+    const double height = layout.caption_top - margin;
+    double y = margin + std::max(0.0, (height - legends_height(layout)) / 2);
     for (const LaidPanel& panel : layout.panels) {
       for (const std::string& text : panel.title_lines) {
         pen_.write(text, layout.column, y + 0.8 * line_height, black);
