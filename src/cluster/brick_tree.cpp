@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <string>
 
 #include "brick_cuts.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/internal/box_corners.h"
 
 namespace pellucid {
 
@@ -145,14 +145,7 @@ BrickTree BrickTree::of_boxes(const Affine<double>& world_from_frame,
 }
 
 std::array<Vec3<double>, 8> BrickTree::corners(int brick) const noexcept {
-  const Box<double>& own = box(brick);
-  std::array<Vec3<double>, 8> corners;
-  for (unsigned n = 0; n < 8; ++n) {
-    corners[n] = world_from_frame_.point({(n & 1) != 0 ? own.upper.x : own.lower.x,
-                                          (n & 2) != 0 ? own.upper.y : own.lower.y,
-                                          (n & 4) != 0 ? own.upper.z : own.lower.z});
-  }
-  return corners;
+  return box_corners(box(brick), world_from_frame_);
 }
 
 RayRegion::HalfSpace BrickTree::plane(int axis, double position) const noexcept {

@@ -11,9 +11,11 @@
 #include "checksum.h"
 #include "pellucid/cluster/render.h"
 #include "pellucid/cluster/sub_scene.h"
+#include "pellucid/geometry/box_around.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/internal/box_corners.h"
 #include "prepass.h"
 
 namespace pellucid {
@@ -313,33 +315,18 @@ class BrickLoader {
       const auto corners = surveys_[index]->corners(data.world_from_data);
       if (corners) return *corners;
     }
-    std::array<Vec3<double>, 8> corners;
-    for (unsigned n = 0; n < 8; ++n) {
-      corners[n] = data.world_from_data.point({(n & 1) != 0 ? data.box.upper.x : data.box.lower.x,
-                                               (n & 2) != 0 ? data.box.upper.y : data.box.lower.y,
-                                               (n & 4) != 0 ? data.box.upper.z : data.box.lower.z});
-    }
-    return corners;
+    return box_corners(data.box, data.world_from_data);
   }
 
   /// Returns the corners that visible_corners() of a scene has: the box of the only layer, or one
   /// along the axes.
   static std::array<Vec3<double>, 8> around(const std::vector<std::array<Vec3<double>, 8>>& boxes) {
     if (boxes.size() == 1) return boxes[0];
-    Vec3<double> lower = boxes[0][0], upper = lower;
+    auto whole = empty_box<double>();
     for (const auto& box : boxes) {
-      for (const Vec3<double>& corner : box) {
-        for (int a = 0; a < 3; ++a) {
-          lower[a] = std::min(lower[a], corner[a]);
-          upper[a] = std::max(upper[a], corner[a]);
-        }
-      }
+      for (const Vec3<double>& corner : box) include(whole, corner);
     }
-    std::array<Vec3<double>, 8> corners{};
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      for (int a = 0; a < 3; ++a) corners[i][a] = (i >> a & 1) != 0 ? upper[a] : lower[a];
-    }
-    return corners;
+    return box_corners(whole);
   }
 
   BrickWeights weights_in_frame() const {

@@ -7,6 +7,7 @@
 
 #include "pellucid/geometry/box_around.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/internal/box_corners.h"
 #include "pellucid/scene/internal/value_noise.h"
 
 namespace pellucid {
@@ -123,18 +124,10 @@ SceneFrame frame_of(const std::vector<DataExtent>& extents) {
   if (extents.size() == 1) {
     return {extents[0].world_from_data, extents[0].box, extents[0].is_uniform_grid};
   }
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  SceneFrame frame{{}, {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}}, false};
+  SceneFrame frame{{}, empty_box<double>(), false};
   for (const DataExtent& extent : extents) {
-    for (unsigned n = 0; n < 8; ++n) {
-      const Box<double>& box = extent.box;
-      const Vec3<double> corner = extent.world_from_data.point(
-          {(n & 1) != 0 ? box.upper.x : box.lower.x, (n & 2) != 0 ? box.upper.y : box.lower.y,
-           (n & 4) != 0 ? box.upper.z : box.lower.z});
-      for (int a = 0; a < 3; ++a) {
-        frame.bounds.lower[a] = std::min(frame.bounds.lower[a], corner[a]);
-        frame.bounds.upper[a] = std::max(frame.bounds.upper[a], corner[a]);
-      }
+    for (const Vec3<double>& corner : box_corners(extent.box, extent.world_from_data)) {
+      include(frame.bounds, corner);
     }
   }
   return frame;

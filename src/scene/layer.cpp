@@ -12,6 +12,7 @@
 #include "moved_source.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/internal/absorbing_blocks.h"
+#include "pellucid/scene/internal/box_corners.h"
 
 namespace pellucid {
 namespace {
@@ -274,15 +275,9 @@ const Box<double>& box_of(const Layer& layer) noexcept {
 }  // namespace
 
 std::array<Vec3<double>, 8> world_corners(const Layer& layer) noexcept {
-  std::array<Vec3<double>, 8> corners{};
-  if (const Volume* const grid = grid_of(layer)) {
-    corners = grid->world_corners();
-  } else {
-    const Box<double>& box = box_of(layer);
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      for (int a = 0; a < 3; ++a) corners[i][a] = (i >> a & 1) != 0 ? box.upper[a] : box.lower[a];
-    }
-  }
+  const Volume* const grid = grid_of(layer);
+  std::array<Vec3<double>, 8> corners =
+      grid != nullptr ? grid->world_corners() : box_corners(box_of(layer));
   for (Vec3<double>& corner : corners) corner = layer.transform.point(corner);
   return corners;
 }

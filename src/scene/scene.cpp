@@ -10,7 +10,9 @@
 
 #include "enum_names.h"
 #include "message.h"
+#include "pellucid/geometry/box_around.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/internal/box_corners.h"
 
 namespace pellucid {
 namespace {
@@ -135,25 +137,14 @@ std::array<Vec3<double>, 8> corners_of_all(const Scene& scene, const CornersOf& 
   const bool all = std::ranges::none_of(scene.layers, visible);
   const Layer* only = nullptr;
   int count = 0;
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Vec3<double> lower{infinity, infinity, infinity}, upper{-infinity, -infinity, -infinity};
+  auto box = empty_box<double>();
   for (const Layer& layer : scene.layers) {
     if (!all && !layer.visible) continue;
     only = &layer;
     ++count;
-    for (const Vec3<double>& corner : corners_of(layer)) {
-      for (int a = 0; a < 3; ++a) {
-        lower[a] = min(lower[a], corner[a]);
-        upper[a] = max(upper[a], corner[a]);
-      }
-    }
+    for (const Vec3<double>& corner : corners_of(layer)) include(box, corner);
   }
-  if (count == 1) return corners_of(*only);
-  std::array<Vec3<double>, 8> corners{};
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    for (int a = 0; a < 3; ++a) corners[i][a] = (i >> a & 1) != 0 ? upper[a] : lower[a];
-  }
-  return corners;
+  return count == 1 ? corners_of(*only) : box_corners(box);
 }
 
 }  // namespace

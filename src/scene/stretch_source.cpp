@@ -8,7 +8,9 @@
 
 #include "message.h"
 #include "moved_source.h"
+#include "pellucid/geometry/box_around.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/internal/box_corners.h"
 #include "readable_numbers.h"
 
 namespace pellucid {
@@ -115,17 +117,7 @@ class MovedSource : public StretchSource {
 
  private:
   static Description moved(Description description, const Affine<double>& to) {
-    const Box<double> own = description.bounds;
-    Box<double>& box = description.bounds;
-    for (unsigned n = 0; n < 8; ++n) {
-      const Vec3<double> corner = to.point({(n & 1) != 0 ? own.upper.x : own.lower.x,
-                                            (n & 2) != 0 ? own.upper.y : own.lower.y,
-                                            (n & 4) != 0 ? own.upper.z : own.lower.z});
-      for (int a = 0; a < 3; ++a) {
-        box.lower[a] = n == 0 ? corner[a] : std::min(box.lower[a], corner[a]);
-        box.upper[a] = n == 0 ? corner[a] : std::max(box.upper[a], corner[a]);
-      }
-    }
+    description.bounds = box_around(box_corners(description.bounds, to));
     description.voxel_size *= std::cbrt(std::abs(determinant(to.matrix)));
     return description;
   }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "pellucid/scene/internal/box_corners.h"
+
 namespace pellucid {
 namespace {
 
@@ -23,13 +25,7 @@ std::array<Vec3<double>, 8> corners_of(const Volume& volume, const BlockRecords&
   const Vec3<double> least = plane(records, 0, 0, 0),
                      most = plane(records, records.axis[0].cells(), records.axis[1].cells(),
                                   records.axis[2].cells());
-  std::array<Vec3<double>, 8> corner;
-  for (std::size_t n = 0; n < 8; ++n) {
-    corner[n] = volume.world_from_grid().point({(n & 1) != 0 ? most.x : least.x,
-                                                (n & 2) != 0 ? most.y : least.y,
-                                                (n & 4) != 0 ? most.z : least.z});
-  }
-  return corner;
+  return box_corners({least, most}, volume.world_from_grid());
 }
 
 /// A place on the screen in squares, and how many of them a world length is there at most.

@@ -14,6 +14,7 @@
 #include "blocks/volume_scan.h"
 #include "message.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/internal/box_corners.h"
 #include "volume_check.h"
 #include "volume_noise.h"
 
@@ -209,14 +210,7 @@ Vec3<double> Volume::grid_upper() const noexcept {
 }
 
 std::array<Vec3<double>, 8> Volume::world_corners() const noexcept {
-  const Vec3<double> lower = grid_lower(), upper = grid_upper();
-  std::array<Vec3<double>, 8> corners;
-  for (unsigned n = 0; n < 8; ++n) {
-    corners[n] =
-        world_from_grid_.point({(n & 1) != 0 ? upper.x : lower.x, (n & 2) != 0 ? upper.y : lower.y,
-                                (n & 4) != 0 ? upper.z : lower.z});
-  }
-  return corners;
+  return box_corners({grid_lower(), grid_upper()}, world_from_grid_);
 }
 
 }  // namespace pellucid
