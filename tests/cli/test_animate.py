@@ -162,6 +162,33 @@ class Animate(ProgramTest):
             alpha = pixel(self.picture(f"f/{i}.png"), 4, 4)[3] / 255
             self.assertAlmostEqual(alpha, 1 - math.exp(-0.3 * value), delta=0.0045)
 
+    def test_a_track_of_the_time(self):
+        self.write("run.vti", steps(TIMES, [[1], [2], [8], [4]]))
+        scene = {"layers": [{"field": {"file": "run.vti"}, "transfer_function": {"points": [
+            {"value": 0, "extinction": 0, "color": [1, 1, 1]},
+            {"value": 8, "extinction": 0.8, "color": [1, 1, 1]}]}}],
+            "image": {"width": 9, "height": 9}, "time": 4,
+            "camera": {"position": [1.5, 1.5, 20], "focal_point": [1.5, 1.5, 1.5],
+                       "up": [0, 1, 0], "projection": "orthographic", "parallel_scale": 1.4}}
+        scene["image"]["background"] = None
+        times = [{"at": 0, "value": 0}, {"at": 2, "value": 2}, {"at": 3, "value": 0}]
+        animation = {"seconds": 4, "fps": 1, "tracks": [{"target": "/time", "keys": times}]}
+        self.write("scene.json", json.dumps({**scene, "animation": animation}).encode())
+        self.succeed("animate", "scene.json", "-o", "f/%d.png")
+        for frame, value in enumerate([1, 2, 8, 1]):  # at 0, nearest to 1, 2, and 0 again
+            alpha = pixel(self.picture(f"f/{frame}.png"), 4, 4)[3] / 255
+            self.assertAlmostEqual(alpha, 1 - math.exp(-0.3 * value), delta=0.0045)
+        for more, why in (({"time": [0, 2]}, 'stands beside "time"'),
+                          ({"tracks": [{"target": "/time", "keys": [{"at": 0, "value": "x"}]}]},
+                           "whose value is no number")):
+            self.write("scene.json", json.dumps(
+                {**scene, "animation": {**animation, **more}}).encode())
+            self.fail_with(why, "animate", "scene.json", "-o", "g/%d.png")
+        scene["layers"][0]["field"] = {"builtin": "shells"}
+        del scene["time"]
+        self.write("scene.json", json.dumps({**scene, "animation": animation}).encode())
+        self.fail_with('"time" moves, but no data', "animate", "scene.json", "-o", "g/%d.png")
+
     def test_values_between_steps(self):
         self.write("run.vti", steps([0, 2, 3], [[1], [5], [2]]))
         function = {"points": [{"value": 0, "extinction": 0, "color": [1, 1, 1]},

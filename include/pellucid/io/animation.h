@@ -48,9 +48,12 @@ struct Animation {
   bool by_steps = false;
   std::vector<AnimationTrack> tracks;
 
-  /// Returns whether the data change in time.
-  bool moves_data() const noexcept { return time || by_steps; }
+  /// Returns whether the data change in time: by `time`, by steps, or by a track of "/time".
+  bool moves_data() const noexcept;
 };
+
+/// Target of a track that moves the data, as `time` does evenly.
+inline constexpr const char* time_target = "/time";
 
 inline constexpr int most_frames = 1'000'000;
 

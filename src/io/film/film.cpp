@@ -117,12 +117,30 @@ std::vector<std::string> part_of(const std::vector<std::string>& tokens) {
   if (first == "image" && (second.empty() || second == "width" || second == "height")) {
     throw Error("is the size of the film, the same in all frames");
   }
-  if (first == "time") throw Error("is what \"time\" of the animation says");
   if (first == "layers" && tokens.size() < 3) {
     throw Error("is whole layers; name a key of one, as \"/layers/0/visible\"");
   }
   const std::size_t length = first == "layers" ? 3 : 1;
   return {tokens.begin(), tokens.begin() + static_cast<std::ptrdiff_t>(length)};
+}
+
+void add_keys(const AnimationTrack& track, MovingPart& part) {
+  for (const AnimationTrack::Key& key : track.keys) {
+    part.moments.push_back(key.at);
+    part.values.push_back(json::parse(key.value));
+  }
+}
+
+/// Returns the track of the data's time. Throws Error.
+MovingPart time_part(const AnimationTrack& track, MovingPart part, const Animation& animation) {
+  if (animation.time || animation.by_steps) {
+    throw Error("stands beside \"time\" of the animation; give one of the two");
+  }
+  add_keys(track, part);
+  for (const json& value : part.values) {
+    if (!value.is_number()) throw Error("has a key whose value is no number, which times are");
+  }
+  return part;
 }
 
 }  // namespace
@@ -131,6 +149,7 @@ std::vector<std::string> part_of(const std::vector<std::string>& tokens) {
 struct Film::Document {
   json base;
   std::vector<MovingPart> parts;
+  std::optional<MovingPart> time;  ///< times of the data; none: no track has them
 
   SceneDescription scene_at(double seconds, const std::string& name) const {
     json scene = base;
@@ -154,14 +173,15 @@ Film::Film(const SceneDescription& written, const SceneDescription& complete,
     const AnimationTrack& track = animation.tracks[i];
     try {
       MovingPart part{tokens_of(track.target), track.easing, {}, {}};
+      if (track.target == time_target) {
+        document_->time = time_part(track, std::move(part), animation);
+        continue;
+      }
       const std::vector<std::string> whole = part_of(part.tokens);
       json::json_pointer place;
       for (const std::string& token : whole) place /= token;
       if (as_written.contains(place)) place_of(base, whole) = as_written.at(place);
-      for (const AnimationTrack::Key& key : track.keys) {
-        part.moments.push_back(key.at);
-        part.values.push_back(json::parse(key.value));
-      }
+      add_keys(track, part);
       place_of(base, part.tokens);
       document_->parts.push_back(std::move(part));
     } catch (const Error& error) {
@@ -193,6 +213,7 @@ std::optional<double> Film::time(int frame) const {
     const std::vector<double>& all = times_.all();
     return all[static_cast<std::size_t>(frame) * all.size() / static_cast<std::size_t>(frames_)];
   }
+  if (document_->time) return document_->time->at(seconds(frame)).get<double>();
   if (!animation_.time) return std::nullopt;
   const auto [first, last] = *animation_.time;
   if (frames_ == 1) return first;
