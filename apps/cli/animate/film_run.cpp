@@ -3,12 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <charconv>
-#include <chrono>
 #include <cmath>
-#include <future>
 #include <utility>
 
 #include "arguments/parse.h"
@@ -151,73 +148,43 @@ std::string FilmRun::options_text() const {
                      scene.color_bar_title);
 }
 
-std::optional<FilmRun::Loaded> FilmRun::load_next(int frame) {
-  for (; frame < film_->frames(); ++frame) {
-    if (!share_.has(frame)) continue;
-    SceneDescription description = film_->description(frame);
-    std::string stamp = stamp_of(description);
-    if (files_.has(frame, stamp)) {
-      ++kept_;
-      continue;
-    }
-    Scene scene = loader_->load(description, parallel_);
-    return Loaded{frame, std::move(description), std::move(stamp), std::move(scene)};
-  }
-  return std::nullopt;
-}
-
 void FilmRun::render_all() {
   const InterruptGuard guard;
   ProgressLine progress(!arguments_.scene.quiet);
-  const int frames = share_.count(film_->frames());
-  const auto start = std::chrono::steady_clock::now();
-  std::optional<Loaded> next = load_next(0);
-  while (next) {
-    const Loaded now = *std::move(next);
-    // The next step is read while this one is rendered.
-    std::future<std::optional<Loaded>> ahead =
-        std::async(std::launch::async, [&] { return load_next(now.frame + 1); });
-    render(now, [&](double share_done) {
-      const double seconds =
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      const double done = made_ + share_done;
-      std::string text = fmt::format("frame {} of {}", made_ + kept_ + 1, frames);
-      if (made_ > 0) {
-        text += fmt::format(", {} left", duration_text(seconds / done * (frames - kept_ - done)));
-      }
-      progress.show(text);
-    });
-    ++made_;
-    next = ahead.get();
-  }
+  const bool is_exr = files_.picture(0).extension() == ".exr";
+  RenderOptions options;
+  options.machine.threads = arguments_.scene.threads;
+  options.outputs.depth = is_exr;
+  options.outputs.error = is_exr && prepared_.knows_its_error(arguments_.scene);
+  view::FilmFrames::Tasks tasks;
+  tasks.is_wanted = [this](int frame) { return share_.has(frame); };
+  tasks.frames = share_.count(film_->frames());
+  tasks.made_from = [this](const SceneDescription& description) { return stamp_of(description); };
+  tasks.progress = [&](const view::FilmProgress& now) {
+    std::string text = fmt::format("frame {} of {}", now.frame, now.frames);
+    if (now.seconds_left) text += fmt::format(", {} left", duration_text(*now.seconds_left));
+    progress.show(text);
+    return !InterruptGuard::interrupted();
+  };
+  tasks.rendered = [this](const view::FilmFrame& frame, RenderResult& result) {
+    complete(frame, result);
+  };
+  frames_.emplace(*film_, files_, *loader_, parallel_, std::move(options), std::move(tasks));
+  unless_interrupted([&] { frames_->render(); });
   progress.clear();
 }
 
-void FilmRun::render(const Loaded& now, const std::function<void(double)>& show) {
-  RenderOptions options;
-  options.machine.threads = arguments_.scene.threads;
-  const bool is_exr = files_.picture(0).extension() == ".exr";
-  options.outputs.depth = is_exr;
-  options.outputs.error = is_exr && prepared_.knows_its_error(arguments_.scene);
-  options.monitor.progress = [&](double share_done) {
-    show(share_done);
-    return !InterruptGuard::interrupted();
-  };
-  RenderResult result = unless_interrupted([&] { return renderer_.render(now.scene, options); });
-  largest_error_ = std::max(largest_error_, result.report.largest_error);
-  if (result.report.pixels_over_tolerance > 0) over_.push_back(now.frame);
-  prepared_.description = now.description;
-  prepared_.scene = now.scene;
+void FilmRun::complete(const view::FilmFrame& frame, RenderResult& result) {
+  prepared_.description = frame.description;
+  prepared_.scene = frame.scene;
   add_metadata(arguments_.scene, prepared_, result.report, result.image);
-  Image& image = result.image;
-  if (!is_exr && arguments_.scene.wants_color_bar()) {
-    std::vector<std::string> notes;
-    if (auto drawn = with_wanted_color_bars(arguments_.scene, prepared_, image, notes)) {
-      image = *std::move(drawn);
-    }
-    if (made_ == 0) notes_.insert(notes_.end(), notes.begin(), notes.end());
+  const bool is_exr = files_.picture(0).extension() == ".exr";
+  if (is_exr || !arguments_.scene.wants_color_bar()) return;
+  std::vector<std::string> notes;
+  if (auto drawn = with_wanted_color_bars(arguments_.scene, prepared_, result.image, notes)) {
+    result.image = *std::move(drawn);
   }
-  files_.write(now.frame, image, now.stamp, shown_background(now.description));
+  if (frames_->made() == 0) notes_.insert(notes_.end(), notes.begin(), notes.end());
 }
 
 void FilmRun::tell(const std::string& path) const {
@@ -226,10 +193,10 @@ void FilmRun::tell(const std::string& path) const {
   const Integration& integration = prepared_.scene.integration;
   std::string text = fmt::format("{}: {} frames, {:.3g} s", path, film_->frames(),
                                  film_->frames() / animation_.fps);
-  if (kept_ > 0) text += fmt::format("; {} were there", kept_);
-  if (made_ > 0 && prepared_.knows_its_error(arguments_.scene)) {
-    text += fmt::format("; largest error of a pixel {:.3g}, tolerance {:.3g}", largest_error_,
-                        integration.tolerance);
+  if (frames_->kept() > 0) text += fmt::format("; {} were there", frames_->kept());
+  if (frames_->made() > 0 && prepared_.knows_its_error(arguments_.scene)) {
+    text += fmt::format("; largest error of a pixel {:.3g}, tolerance {:.3g}",
+                        frames_->largest_error(), integration.tolerance);
   }
   print_note(text);
 }

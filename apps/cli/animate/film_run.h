@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "pellucid/cpu/renderer.h"
 #include "pellucid/io/film.h"
 #include "pellucid/io/film_files.h"
 #include "render/render.h"
 #include "share.h"
+#include "view/film/film_frames.h"
 
 namespace pellucid::cli {
 
@@ -43,25 +41,16 @@ class FilmRun {
   const Film& film() const { return *film_; }
   double fps() const noexcept { return animation_.fps; }
   /// Returns the frames with pixels over the tolerance.
-  const std::vector<int>& over() const noexcept { return over_; }
+  const std::vector<int>& over() const noexcept { return frames_->over(); }
 
  private:
-  /// A frame that is to be rendered, with its data.
-  struct Loaded {
-    int frame = 0;
-    SceneDescription description;
-    std::string stamp;
-    Scene scene;
-  };
-
   void load();
   std::string stamp_of(const SceneDescription& description) const;
   /// Returns what else a picture depends on.
   std::string options_text() const;
-  /// Returns the next frame from `frame` on that is not there, loaded; none: all are there.
-  std::optional<Loaded> load_next(int frame);
   void render_all();
-  void render(const Loaded& now, const std::function<void(double)>& show);
+  /// Adds metadata and color bars to the picture of a frame.
+  void complete(const view::FilmFrame& frame, RenderResult& result);
 
   const AnimateArguments& arguments_;
   FilmShare share_;
@@ -71,12 +60,8 @@ class FilmRun {
   Animation animation_;
   std::optional<Film> film_;
   std::optional<FrameLoader> loader_;
-  Renderer renderer_;
+  std::optional<view::FilmFrames> frames_;
   std::vector<std::string> notes_;
-  std::vector<int> over_;
-  int made_ = 0;
-  std::atomic<int> kept_ = 0;  ///< counted while a frame is rendered
-  double largest_error_ = 0;
 };
 
 }  // namespace pellucid::cli
