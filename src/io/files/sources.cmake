@@ -15,6 +15,7 @@ pellucid_io_sources(
     numbered_files.cpp
     temporary_folder.cpp
     zip_archive.cpp
+    zip_files.cpp
     zip_writer.cpp
   LOOPS
     bzip2_inflater.cpp
