@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "cli/arguments/parse.h"
+#include "film/scene_times.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid::view {
@@ -17,7 +18,6 @@ namespace pellucid::view {
 namespace {
 
 constexpr std::size_t longest_history = 100;
-constexpr int no_gesture = -1;
 
 constexpr std::array<std::string_view, 2> scene_keys{"clip", "lights"};
 constexpr std::array<std::string_view, 8> layer_keys{
@@ -79,8 +79,13 @@ void apply(const Edit& edit, Json& document) {
   put(layer, edit.key, std::move(value));
 }
 
-/// Gaussians as matrices, so that a page edits one form. Their functions stay the same to the bit.
-void use_matrices(LayerDescription& layer) {
+std::string text_of(const LayerDescription& layer) {
+  return layer.transfer_function ? transfer_function_to_json(*layer.transfer_function) : "";
+}
+
+}  // namespace
+
+void SceneState::use_matrices(LayerDescription& layer) {
   if (!layer.transfer_function) return;
   auto* const function = std::get_if<MultivariateDescription>(&*layer.transfer_function);
   if (function == nullptr) return;
@@ -94,17 +99,13 @@ void use_matrices(LayerDescription& layer) {
   }
 }
 
-std::string text_of(const LayerDescription& layer) {
-  return layer.transfer_function ? transfer_function_to_json(*layer.transfer_function) : "";
-}
-
-}  // namespace
-
 SceneState::SceneState(SceneDescription description, Scene scene, ParallelFor parallel)
     : description_(std::move(description)),
       scene_(std::move(scene)),
-      parallel_(std::move(parallel)) {
+      parallel_(std::move(parallel)),
+      times_(take_times(description_)) {
   for (LayerDescription& layer : description_.layers) use_matrices(layer);
+  keyed_ = keyed_parts(with_time());
 }
 
 void SceneState::set_camera(const Camera& camera) {
@@ -115,18 +116,24 @@ void SceneState::set_camera(const Camera& camera) {
   }
   description_.camera = camera;
   scene_.camera = camera;
+  // A turntable starts from what is seen.
+  if (turntable_camera_) frame_ = 0;
+  turntable_camera_.reset();
+  film_.reset();
 }
 
 void SceneState::set_size(ImageSize size) {
   if (scene_.backdrop) return;  // whose size it is
   description_.size = size;
   scene_.size = size;
+  film_.reset();
 }
 
 void SceneState::set_tolerance(double tolerance) {
   scene_.integration.tolerance = nearest_tolerance(tolerance);
   description_.integration.tolerance = scene_.integration.tolerance;
   fit_opacity_tables(description_, scene_);
+  film_.reset();
 }
 
 std::size_t SceneState::checked_layer(std::size_t layer) const {
@@ -172,7 +179,7 @@ void SceneState::refine_gaussians(std::size_t layer, MultivariateDescription gau
   const auto refined = target.transfer_function;
   become(std::move(next), layer, 1);
   for (auto* const history : {&undone_by_, &redone_by_}) {
-    for (SceneDescription& step : *history) {
+    for (auto& [step, keyed] : *history) {
       if (text_of(step.layers[layer]) == before) step.layers[layer].transfer_function = refined;
     }
   }
@@ -198,7 +205,7 @@ void SceneState::set_default_function(std::size_t layer) {
   }
   bare.isosurfaces.clear();
   bare.slices.clear();
-  complete_description(remake_layer(without, layer, scene_.layers[layer], parallel_), bare);
+  complete_description(remake_layer(timed(without), layer, scene_.layers[layer], parallel_), bare);
   target.transfer_function = bare.transfer_function;
   target.shading = bare.shading;
   take_step(std::move(next), layer, 1, no_gesture);
@@ -220,9 +227,10 @@ void SceneState::set_source(std::size_t layer, const std::function<void(LayerDes
     target.isosurfaces.clear();
     target.slices.clear();
   }
+  next.times_ = take_times(next.description_);
   // The others keep their data, which may be arrays in memory.
-  SceneDescription alone = next.description_;
-  alone.layers = {target};
+  SceneDescription alone = next.timed(next.description_);
+  alone.layers = {alone.layers[layer]};
   check_has_sources(alone);
   std::vector<MeshSource> meshes;
   next.scene_.layers[layer] = make_scene(alone, parallel_, &meshes).layers.front();
@@ -234,6 +242,8 @@ void SceneState::set_source(std::size_t layer, const std::function<void(LayerDes
   next.undone_by_.clear();
   next.redone_by_.clear();
   next.last_gesture_ = no_gesture;
+  next.film_.reset();
+  next.keyed_ = keyed_parts(next.with_time());
   *this = std::move(next);
 }
 
@@ -242,8 +252,9 @@ void SceneState::become(SceneDescription next, std::size_t first, std::size_t co
   scene.clips = next.clips;
   scene.lights = next.lights;
   scene.background = next.background;
+  const SceneDescription at_time = count > 0 ? timed(next) : SceneDescription{};
   for (std::size_t i = first; i < first + count; ++i) {
-    scene.layers[i] = remake_layer(next, i, scene_.layers[i], parallel_);
+    scene.layers[i] = remake_layer(at_time, i, scene_.layers[i], parallel_);
     complete_description(scene.layers[i], next.layers[i]);
   }
   check_data(scene);
@@ -252,29 +263,37 @@ void SceneState::become(SceneDescription next, std::size_t first, std::size_t co
   next.camera = scene_.camera;
   description_ = std::move(next);
   scene_ = std::move(scene);
+  film_.reset();
 }
 
 void SceneState::take_step(SceneDescription next, std::size_t first, std::size_t count,
                            int gesture) {
   SceneDescription before = description_;
   become(std::move(next), first, count);
+  remember(std::move(before), gesture);
+}
+
+void SceneState::remember(SceneDescription before, int gesture) {
   redone_by_.clear();
   if (gesture != no_gesture && gesture == last_gesture_) return;
   last_gesture_ = gesture;
-  undone_by_.push_back(std::move(before));
+  undone_by_.push_back({std::move(before), keyed_});
   if (undone_by_.size() > longest_history) undone_by_.erase(undone_by_.begin());
 }
 
-void SceneState::step(std::vector<SceneDescription>& from, std::vector<SceneDescription>& to) {
+void SceneState::step(std::vector<Step>& from, std::vector<Step>& to) {
   if (from.empty()) return;
-  SceneDescription next = from.back();
+  auto [next, keyed] = from.back();
+  next.time = description_.time;
   next.size = description_.size;
   next.integration = description_.integration;
   SceneDescription before = description_;
   become(std::move(next), 0, scene_.layers.size());
   from.pop_back();
-  to.push_back(std::move(before));
+  to.push_back({std::move(before), std::exchange(keyed_, std::move(keyed))});
   last_gesture_ = no_gesture;
+  if (!description_.animation || !description_.animation->turntable) turntable_camera_.reset();
+  clamp_frame();
 }
 
 void SceneState::undo() {
@@ -287,6 +306,7 @@ void SceneState::redo() {
 
 SceneDescription SceneState::portable_description() const {
   SceneDescription description = description_;
+  if (turntable_camera_) description.camera = turntable_camera_;
   visit_paths(description, [&](std::filesystem::path& path) {
     if (path.empty() || path == array_in_memory) return;
     path = std::filesystem::absolute(path).lexically_normal();

@@ -4,17 +4,21 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "command.h"
+#include "film/keyframes.h"
+#include "pellucid/io/film.h"
 #include "pellucid/io/scene_json.h"
 
 namespace pellucid::view {
 
-/// The scene that all pages look at, with its history. Description and scene always agree.
+/// The scene that all pages look at, with its history and its film. Description and scene always
+/// agree. Sources that follow the scene's time have none of their own in the description.
 class SceneState {
  public:
   /// `description` is complete (complete_description()), and `scene` was made from it.
@@ -54,6 +58,45 @@ class SceneState {
   void set_source(std::size_t layer, const std::function<void(LayerDescription&)>& change,
                   bool keeps_function);
 
+  // scene_state_film.cpp:
+  /// Returns the times of the steps that the scene's time chooses from, ascending; empty: none.
+  const std::vector<double>& times() const noexcept { return times_.all(); }
+  /// Returns the time of the data; 0 without steps.
+  double time() const;
+  /// Returns whether the data of a layer, or some of them, follow the scene's time.
+  bool follows_time(std::size_t layer) const;
+  /// Reads the data at another time: no step of the history. Throws Error if no data have steps.
+  void set_time(double time);
+
+  /// Returns the film that keyframes are added to: the scene's, or one in which nothing moves yet.
+  const Animation& film_length() const noexcept;
+  /// Returns the film that is saved: the scene's, or that of a scene without keyframes
+  /// (default_animation()).
+  Animation film_to_save() const;
+  /// Returns the description with the times that are shown in its sources, and none of the scene.
+  SceneDescription resolved_description() const;
+  /// Returns a film of the scene. Throws Error.
+  Film make_film(const Animation& animation) const;
+  /// Returns what loads its frames, from the scene that is shown.
+  FrameLoader make_loader() const;
+  /// Returns the frame that the timeline stands at, and its moment in seconds.
+  int frame() const noexcept { return frame_; }
+  double seconds() const noexcept;
+  /// Becomes the scene of a frame, to the bit that of Film: no step of the history. What no key
+  /// says stays as it is. Throws Error if there is no such frame.
+  void show_frame(int frame);
+  /// Makes what is shown the keyframe of the present moment (with_keyframe()), as a step of the
+  /// history, which the changes below are, too. Throws Error, as they do.
+  void set_keyframe();
+  void move_keyframe(std::size_t keyframe, int frame);
+  /// Deletes a keyframe, and with the last one the film.
+  void delete_keyframe(std::size_t keyframe);
+  /// Sets the length of the film. Keyframes stay at the same parts of it.
+  void set_film_length(double seconds, double fps);
+  /// Has the camera go around from where it is, in place of its keyframes.
+  void set_turntable(double turns);
+  void remove_film();
+
   bool can_undo() const noexcept { return !undone_by_.empty(); }
   bool can_redo() const noexcept { return !redone_by_.empty(); }
   /// Take back the last edit, or make it again. Camera, size and tolerance stay as they are.
@@ -73,17 +116,46 @@ class SceneState {
   std::size_t checked_layer(std::size_t layer) const;
 
  private:
+  static constexpr int no_gesture = -1;
+  struct Step {
+    SceneDescription description;
+    Json keyed;
+  };
+
   /// Makes the scene of another description, with the data of this one and new looks of some
   /// layers.
   void become(SceneDescription next, std::size_t first, std::size_t count);
   /// Becomes `next`, and remembers the description before it unless the gesture goes on.
   void take_step(SceneDescription next, std::size_t first, std::size_t count, int gesture);
-  void step(std::vector<SceneDescription>& from, std::vector<SceneDescription>& to);
+  void step(std::vector<Step>& from, std::vector<Step>& to);
+  /// Adds the description to the history, unless the gesture goes on.
+  void remember(SceneDescription before, int gesture);
+  /// Writes Gaussians as matrices, so that a page edits one form. Their functions stay the same to
+  /// the bit.
+  static void use_matrices(LayerDescription& layer);
+
+  /// Returns the description with the time of the data, also where it is the first one.
+  SceneDescription with_time() const;
+  /// Returns the description with the scene's time in its sources, and without a film.
+  SceneDescription timed(SceneDescription description) const;
+  /// Becomes a scene of the same sources at other times, or with other looks.
+  void load(SceneDescription next);
+  /// Returns the scene that frames are made from: with the camera of a turntable's start.
+  SceneDescription film_base() const;
+  void set_film(std::optional<Animation> film);
+  void clamp_frame();
 
   SceneDescription description_;
   Scene scene_;
   ParallelFor parallel_;
-  std::vector<SceneDescription> undone_by_, redone_by_;
+  SceneTimes times_;                  ///< Times of the sources that follow the scene's time
+  std::shared_ptr<const Film> film_;  ///< Film of the animation; null: not made yet
+  Animation new_film_;                ///< without keyframes
+  bool length_is_set_ = false;        ///< True once the user chose that of new_film_
+  int frame_ = 0;
+  std::optional<Camera> turntable_camera_;  ///< Camera of a turntable's start, once turned
+  Json keyed_;                              ///< keyed_parts() of the last keyframe
+  std::vector<Step> undone_by_, redone_by_;
   int last_gesture_ = -1;
   std::filesystem::path temporary_;  ///< empty: there is none
 };

@@ -27,6 +27,8 @@ class SceneTimes {
   /// earlier), or between two where their source has TimeBetween::linear. `description` has the
   /// sources of the one that the times are of.
   void set(SceneDescription& description, double moment) const;
+  /// Takes the times of such data away again, so that they have none of their own.
+  void clear(SceneDescription& description) const;
 
  private:
   std::vector<std::vector<std::vector<double>>> times_;  ///< times of each source of each layer

@@ -75,6 +75,16 @@ void SceneTimes::set(SceneDescription& description, double moment) const {
   }
 }
 
+void SceneTimes::clear(SceneDescription& description) const {
+  for (std::size_t i = 0; i < times_.size(); ++i) {
+    auto times = times_[i].begin();
+    visit_timed(description.layers[i], [&](auto&, auto& options) {
+      if (!times->empty()) options.time.reset();
+      ++times;
+    });
+  }
+}
+
 void set_first_time(const Animation& film, SceneDescription& description) {
   const SceneTimes times(description);
   if (times.all().empty()) return;

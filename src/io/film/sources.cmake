@@ -10,6 +10,5 @@ pellucid_io_sources(
     video.cpp
   NOT_WEB
     choose_for_steps.cpp
-    film.cpp
     film_files.cpp
     video.cpp)
