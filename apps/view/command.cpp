@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <utility>
 
+#include "pellucid/io/animation.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/view_camera.h"
 
@@ -201,6 +202,32 @@ Probe read_probe(Members& members) {
   return probe;
 }
 
+EditFilm read_film(Members& members) {
+  using Action = EditFilm::Action;
+  constexpr std::array actions{Action::set_keyframe, Action::move_keyframe, Action::delete_keyframe,
+                               Action::length,       Action::turntable,     Action::remove};
+  EditFilm edit{
+      actions[members.choice("action", {"set_keyframe", "move_keyframe", "delete_keyframe",
+                                        "length", "turntable", "remove"})]};
+  if (edit.action == Action::move_keyframe || edit.action == Action::delete_keyframe) {
+    edit.keyframe = static_cast<std::size_t>(members.integer("keyframe", 0, most_frames));
+  }
+  if (edit.action == Action::move_keyframe) edit.frame = members.integer("frame", 0, most_frames);
+  if (edit.action == Action::turntable) edit.turns = members.number("turns", -1e4, 1e4);
+  if (edit.action == Action::length) {
+    edit.seconds = members.number("seconds", 1e-3, 86400);
+    edit.fps = members.number("fps", 1e-3, 1000);
+  }
+  return edit;
+}
+
+SaveFilm read_save_film(Members& members) {
+  const std::vector<std::string> formats(film_formats.begin(), film_formats.end());
+  return {members.integer("width", 1, largest_edge), members.integer("height", 1, largest_edge),
+          members.number("tolerance", smallest_tolerance, largest_tolerance),
+          formats[members.choice("format", formats)]};
+}
+
 struct Kind {
   std::string_view type;
   Command (*read)(Members&);
@@ -293,6 +320,12 @@ constexpr Kind kinds[] = {
      [](Members& m) -> Command {
        return ChooseTime{m.layer(), m.number("time", -1e30, 1e30)};
      }},
+    {"scene_time", [](Members& m) -> Command { return SetTime{m.number("time", -1e30, 1e30)}; }},
+    {"film_frame",
+     [](Members& m) -> Command { return ShowFilmFrame{m.integer("frame", 0, most_frames)}; }},
+    {"film", [](Members& m) -> Command { return read_film(m); }},
+    {"save_film", [](Members& m) -> Command { return read_save_film(m); }},
+    {"cancel_film", [](Members&) -> Command { return CancelFilm{}; }},
     {"list_file", [](Members& m) -> Command { return ListFile{m.layer()}; }},
     {"list_folder", [](Members& m) -> Command { return ListFolder{m.path("folder", 0)}; }},
     {"open", [](Members& m) -> Command { return OpenFile{m.path("input", 1)}; }},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -140,6 +141,33 @@ struct ChooseTime {
   std::size_t layer;
   double time;
 };
+/// Shows all data that have steps at a time.
+struct SetTime {
+  double time;
+};
+/// Shows a frame of the film, counted from 0.
+struct ShowFilmFrame {
+  int frame;
+};
+/// Changes the film. A keyframe is counted from 0, in the order of time.
+struct EditFilm {
+  /// set_keyframe: at the present moment; remove: all of the film.
+  enum class Action { set_keyframe, move_keyframe, delete_keyframe, length, turntable, remove };
+  Action action;
+  std::size_t keyframe = 0;
+  int frame = 0;                ///< to which the keyframe moves
+  double seconds = 0, fps = 0;  ///< Length and rate of the film
+  double turns = 1;             ///< Number of turns of the turntable
+};
+/// Asks for a file of the film: a video, or a zip archive of numbered pictures.
+struct SaveFilm {
+  int width, height;
+  double tolerance;
+  std::string format;  ///< one of film_formats
+};
+inline constexpr std::array film_formats{"webm", "mp4", "zip"};
+/// Ends the film that is being saved, if there is one.
+struct CancelFilm {};
 /// Asks for the arrays of a layer's file, and the times of a mesh. All of the file is read for it.
 struct ListFile {
   std::size_t layer;
@@ -167,8 +195,8 @@ using Command =
     std::variant<Resize, Turn, Pan, Zoom, Roll, Center, ResetCamera, LookFrom, SetProjection,
                  SetTolerance, Edit, Undo, Redo, Suggest, CancelFit, ImportFunction, ExportFunction,
                  AskHistogram, AskThumbnail, Probe, AskSlice, Locate, DragHandle, ShowErrorMap,
-                 ChooseComponent, ChooseArray, ChooseTime, ListFile, ListFolder, OpenFile,
-                 OpenUpload, Save>;
+                 ChooseComponent, ChooseArray, ChooseTime, SetTime, ShowFilmFrame, EditFilm,
+                 SaveFilm, CancelFilm, ListFile, ListFolder, OpenFile, OpenUpload, Save>;
 
 /// Largest message of a page, in bytes: an imported color map with some ten thousand nodes.
 inline constexpr std::size_t largest_message = std::size_t(2) << 20;

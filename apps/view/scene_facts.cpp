@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "film/film_job.h"
 #include "histograms.h"
 #include "pellucid/geometry/box_around.h"
 #include "pellucid/io/internal/patient_space.h"
@@ -107,6 +108,34 @@ Lettering lettering_of(const SceneDescription& description) {
 
 namespace {
 
+/// Returns what pages show of the times of the data and of the film.
+Json timeline_json(const SceneState& state) {
+  const Animation& film = state.film_length();
+  const std::vector<Keyframe> keyframes = keyframes_of(film);
+  Json keys = Json::array();
+  for (const Keyframe& keyframe : keyframes) {
+    keys.push_back(
+        {{"at", keyframe.at}, {"camera", keyframe.has_camera}, {"parts", keyframe.targets}});
+  }
+  Json follows = Json::array();
+  for (std::size_t i = 0; i < state.scene().layers.size(); ++i) {
+    follows.push_back(state.follows_time(i));
+  }
+  const auto chosen = keyframe_at(keyframes, state.frame(), film.fps);
+  return {{"times", state.times()},
+          {"time", state.time()},
+          {"follows", std::move(follows)},
+          {"has_film", state.description().animation.has_value()},
+          {"seconds", film.seconds},
+          {"fps", film.fps},
+          {"frames", frame_count(film)},
+          {"frame", state.frame()},
+          {"keyframes", std::move(keys)},
+          {"keyframe", chosen ? Json(*chosen) : Json()},
+          {"turns", film.turntable ? Json(film.turntable->turns) : Json()},
+          {"formats", savable_film_formats()}};
+}
+
 bool is_savable(const SceneDescription& description) {
   try {
     check_has_sources(description);
@@ -141,6 +170,7 @@ Json scene_json(const SceneState& state, const std::vector<FileChoices>& choices
                      {"lit", preset.lit}});
   }
   return {{"type", "scene"},
+          {"timeline", timeline_json(state)},
           {"scene", Json::parse(scene_to_json(state.portable_description()))},
           {"savable", is_savable(state.description())},
           {"temporary", state.has_temporary_folder()},

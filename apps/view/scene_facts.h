@@ -30,7 +30,10 @@ Lettering lettering_of(const SceneDescription& description);
 ///   {"type": "scene", "scene": (scene file), "savable", "temporary": (whether its data go with the
 ///    program), "layers": [{"kind", "channels", "range", "ranges" (of each channel), "steps"
 ///    (slice_steps_json()), "components", "arrays", "times"}], "box": {"lower", "upper"},
-///    "presets": [...], "sides": [...], "anatomical", "can_undo", "can_redo"}
+///    "timeline": {"times", "time", "follows" (whether each layer follows the time), "has_film",
+///    "seconds", "fps", "frames", "frame", "keyframes": [{"at", "camera", "parts"}], "keyframe"
+///    (the one that the frame is), "turns", "formats" (in which films are saved here)}, "presets":
+///    [...], "sides": [...], "anatomical", "can_undo", "can_redo"}
 Json scene_json(const SceneState& state, const std::vector<FileChoices>& choices);
 
 }  // namespace pellucid::view

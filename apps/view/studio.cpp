@@ -50,7 +50,8 @@ bool only_asks(const Command& command) {
          std::holds_alternative<AskThumbnail>(command) ||
          std::holds_alternative<ExportFunction>(command) ||
          std::holds_alternative<ListFile>(command) || std::holds_alternative<CancelFit>(command) ||
-         starts_fit(command);
+         std::holds_alternative<EditFilm>(command) || std::holds_alternative<SaveFilm>(command) ||
+         std::holds_alternative<CancelFilm>(command) || starts_fit(command);
 }
 
 /// Tells whether a command ends the frame that is being rendered: it changes it, or begins a fit.
@@ -67,7 +68,8 @@ bool is_edit(const Command& command) {
                std::is_same_v<Kind, Redo> || std::is_same_v<Kind, Suggest> ||
                std::is_same_v<Kind, ImportFunction> || std::is_same_v<Kind, DragHandle> ||
                std::is_same_v<Kind, ChooseComponent> || std::is_same_v<Kind, ChooseArray> ||
-               std::is_same_v<Kind, ChooseTime>;
+               std::is_same_v<Kind, ChooseTime> || std::is_same_v<Kind, SetTime> ||
+               std::is_same_v<Kind, ShowFilmFrame> || std::is_same_v<Kind, EditFilm>;
       },
       command);
 }
@@ -79,6 +81,10 @@ bool replaces(const Command& later, const Command& earlier) {
     return probe != nullptr && !probe->picks;
   }
   if (std::holds_alternative<Locate>(later)) return std::holds_alternative<Locate>(earlier);
+  if (std::holds_alternative<SetTime>(later)) return std::holds_alternative<SetTime>(earlier);
+  if (std::holds_alternative<ShowFilmFrame>(later)) {
+    return std::holds_alternative<ShowFilmFrame>(earlier);
+  }
   const Edit *const newer = std::get_if<Edit>(&later), *const older = std::get_if<Edit>(&earlier);
   return newer != nullptr && older != nullptr && newer->gesture == older->gesture &&
          newer->layer == older->layer && newer->key == older->key;
@@ -218,7 +224,18 @@ struct Studio::Visitor {
         },
         false);
   }
+  void operator()(const SetTime& c) const { studio.state_.set_time(c.time); }
+  void operator()(const ShowFilmFrame& c) const {
+    studio.state_.show_frame(c.frame);
+    studio.is_fitted_ = true;
+  }
+  void operator()(const EditFilm& c) const { studio.edit_film(c); }
+  void operator()(const SaveFilm& c) const { studio.save_film(page, c); }
+  void operator()(const CancelFilm&) const { studio.cancel_film(); }
   void operator()(const ChooseTime& c) const {
+    if (studio.state_.follows_time(studio.state_.checked_layer(c.layer))) {
+      return studio.state_.set_time(c.time);
+    }
     studio.state_.set_source(
         c.layer,
         [&](LayerDescription& layer) {
@@ -254,6 +271,7 @@ struct Studio::Visitor {
 Studio::Studio(SceneState state, bool keeps_camera, int threads, SceneChanged changed, Send send,
                std::vector<std::size_t> quick_layers, Worker worker)
     : state_(std::move(state)),
+      threads_(threads),
       parallel_(parallel_for(threads)),
       changed_(std::move(changed)),
       send_(std::move(send)),
@@ -276,6 +294,7 @@ Studio::~Studio() {
   if (thread_.joinable()) thread_.join();
   cancel_fit();
   fitting_.reset();
+  film_job_.reset();
 }
 
 void Studio::page_opened(PageId page, std::uint64_t number) {
@@ -298,6 +317,10 @@ void Studio::receive(PageId page, Command command, std::size_t bytes, std::uint6
   // A fit waits for no frame.
   if (std::holds_alternative<CancelFit>(command)) {
     cancel_fit();
+    return skip(page, number);
+  }
+  if (std::holds_alternative<CancelFilm>(command)) {
+    cancel_film();
     return skip(page, number);
   }
   const bool ends = ends_frame(command);
@@ -425,7 +448,7 @@ void Studio::carry_out(std::deque<Asked> asked) {
     changed = changed || !only_asks(one.command);
   }
   if (changed) send_({}, text_message({{"type", "changing"}}));
-  if (changed && changed_) changed_(state_.description(), state_.scene());
+  if ((changed || edited) && changed_) changed_(state_.resolved_description(), state_.scene());
   if (edited) send_scene();
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "command.h"
+#include "film/film_job.h"
 #include "frame_maker.h"
 #include "gaussian_fit.h"
 #include "scene_facts.h"
@@ -108,7 +109,14 @@ class Studio {
   void take_gaussians(const Fitting& fitting, GaussianFit::Outcome outcome);
   void cancel_fit();
 
+  // studio_film.cpp:
+  void edit_film(const EditFilm& edit);
+  /// Begins to save a film for a page. Throws Error if one is being saved.
+  void save_film(PageId page, const SaveFilm& wanted);
+  void cancel_film();
+
   SceneState state_;
+  int threads_;
   ParallelFor parallel_;
   SceneChanged changed_;
   Send send_;
@@ -137,6 +145,8 @@ class Studio {
   std::unique_ptr<Fitting> fitting_;
   std::optional<GaussianFit::Outcome> fitted_;
   std::size_t fit_number_ = 0;
+  std::mutex film_mutex_;  ///< Mutex of film_job_
+  std::unique_ptr<FilmJob> film_job_;
   std::thread thread_;
 };
 

@@ -85,7 +85,7 @@ void Studio::take_gaussians(const Fitting& fitting, GaussianFit::Outcome outcome
   }
   stale_ = true;
   frames_.forget_image();
-  if (changed_) changed_(state_.description(), state_.scene());
+  if (changed_) changed_(state_.resolved_description(), state_.scene());
   send_scene();
 }
 

@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "pellucid/cpu/render.h"
+#include "pellucid/io/internal/atomic_file.h"
+#include "pellucid/io/internal/temporary_folder.h"
+#include "pellucid/scene/error.h"
+#include "view/command.h"
+#include "view/film/film_job.h"
+#include "view/film/keyframes.h"
+#include "view/scene_facts.h"
+#include "view/scene_state.h"
+
+namespace pellucid::view::film_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A .vti of 4 x 4 x 4 points at the times 0, 0.5 and 2, with the values 0 to 1, 1 to 2, 2 to 3.
+fs::path file_with_steps() {
+  static const TemporaryFolder folder("steps of a test");
+  std::string arrays;
+  for (int step = 0; step < 3; ++step) {
+    arrays += R"(<DataArray type="Float32" Name="a" format="ascii" TimeStep=")" +
+              std::to_string(step) + "\">";
+    for (int i = 0; i < 64; ++i) arrays += std::to_string(step + i / 63.0) + " ";
+    arrays += "</DataArray>";
+  }
+  const fs::path path = folder.path() / "steps.vti";
+  write_text_file(path, R"(<VTKFile type="ImageData"><ImageData WholeExtent="0 3 0 3 0 3" )"
+                        R"(Origin="0 0 0" Spacing="1 1 1" TimeValues="0 0.5 2">)"
+                        R"(<Piece Extent="0 3 0 3 0 3"><PointData Scalars="a">)" +
+                            arrays + "</PointData></Piece></ImageData></VTKFile>");
+  return path;
+}
+
+SceneState state_of(const std::string& layers, const std::string& more = "") {
+  SceneDescription description = parse_scene(
+      R"({"layers": [)" + layers + R"(], "image": {"width": 24, "height": 16})" + more + "}",
+      "test");
+  Scene scene = make_scene(description);
+  for (std::size_t i = 0; i < scene.layers.size(); ++i) {
+    complete_description(scene.layers[i], description.layers[i]);
+  }
+  description.camera = scene.camera;
+  return {std::move(description), std::move(scene), {}};
+}
+
+SceneState shells() {
+  return state_of(R"({"field": {"builtin": "shells", "points": 16},
+                      "isosurfaces": [{"value": 0.5}], "shading": {}})");
+}
+
+SceneState steps(const std::string& more = "") {
+  return state_of(R"({"field": {"file": ")" + file_with_steps().string() + R"("},
+      "transfer_function": {"points": [{"value": 0, "extinction": 0.1, "color": [1, 0, 0]},
+                                       {"value": 3, "extinction": 2, "color": [0, 1, 0]}]}})",
+                  more);
+}
+
+using Pixels = std::vector<std::array<float, 4>>;
+
+Pixels pixels_of(const Scene& scene) {
+  return render(scene).image.pixels;
+}
+
+/// Pixels of a frame as the film of the saved scene has them.
+Pixels film_pixels(const SceneState& state, int frame) {
+  SceneDescription saved = parse_scene(state.saved(), "saved");
+  const Animation animation = *saved.animation;
+  if (animation.moves_data()) saved.time.reset();
+  resolve_time(saved);
+  const SceneTimes times(saved);
+  SceneDescription base = saved;
+  base.animation.reset();
+  return pixels_of(make_scene(Film(base, base, animation, times).description(frame)));
+}
+
+Camera from(double x, double y, double z) {
+  Camera camera;
+  camera.position = {x, y, z};
+  camera.focal_point = {0, 0, 0};
+  camera.up = {0, 1, 0};
+  return camera;
+}
+
+template <class Work>
+std::string error_of(const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void expect_error(const std::string& error, const std::string& part) {
+  EXPECT_NE(error.find(part), error.npos) << error;
+}
+
+TEST(Time, IsTakenFromTheSources) {
+  SceneState state = steps(R"(, "time": 0.6)");
+  EXPECT_EQ(state.times(), (std::vector<double>{0, 0.5, 2}));
+  EXPECT_EQ(state.time(), 0.6);
+  SceneDescription resolved = state.description();
+  resolved.time.reset();
+  resolved.layers[0].field.options.time = 0.5;
+  const SceneState of_source(resolved, make_scene(resolved), {});
+  EXPECT_EQ(of_source.time(), 0.5);
+  EXPECT_FALSE(of_source.description().layers[0].field.options.time);
+  EXPECT_EQ(of_source.times().size(), 3U);
+}
+
+TEST(Time, ShowsTheNearestStepAndIsSaved) {
+  SceneState state = steps();
+  EXPECT_EQ(state.time(), 0);
+  for (const double time : {2.0, 0.4, 0.0}) {
+    state.set_time(time);
+    EXPECT_EQ(state.time(), time);
+    const Json saved = Json::parse(state.saved());
+    EXPECT_EQ(saved["time"], time);
+    EXPECT_FALSE(saved["layers"][0]["field"].contains("time"));
+    SceneDescription again = parse_scene(state.saved(), "saved");
+    EXPECT_EQ(pixels_of(state.scene()), pixels_of(make_scene(again)));
+    again.time = time == 0.4 ? 0.5 : time;
+    EXPECT_EQ(pixels_of(state.scene()), pixels_of(make_scene(again)));
+  }
+  EXPECT_FALSE(state.can_undo());
+  expect_error(error_of([] { shells().set_time(1); }), "no data of the scene have steps");
+}
+
+TEST(Time, StaysWhenEditsAreUndone) {
+  SceneState state = steps();
+  state.edit({{}, "clip", Json::parse(R"([{"sphere": {"center": [1, 1, 1], "radius": 1}}])"), 1});
+  state.set_time(2);
+  state.undo();
+  EXPECT_EQ(state.time(), 2);
+  EXPECT_EQ(pixels_of(state.scene()), pixels_of(make_scene(parse_scene(state.saved(), "saved"))));
+}
+
+TEST(Film, KeyframesHoldCameraAndWhatChanged) {
+  SceneState state = shells();
+  state.set_film_length(2, 4);
+  EXPECT_FALSE(state.description().animation);
+  state.set_camera(from(4, 0, 1));
+  state.set_keyframe();
+  state.show_frame(4);
+  state.edit({0, "isosurfaces", Json::parse(R"([{"value": 0.8}])"), 1});
+  state.set_camera(from(0, 1, 4));
+  state.set_keyframe();
+  const Animation& film = *state.description().animation;
+  ASSERT_EQ(film.cameras.size(), 2U);
+  EXPECT_EQ(film.cameras[0].at, 0.0);
+  EXPECT_EQ(film.cameras[1].at, 1.0);
+  EXPECT_EQ(film.cameras[1].camera.position, (Vec3<double>{0, 1, 4}));
+  ASSERT_EQ(film.tracks.size(), 1U);
+  EXPECT_EQ(film.tracks[0].target, "/layers/0/isosurfaces");
+  ASSERT_EQ(film.tracks[0].keys.size(), 2U);
+  EXPECT_EQ(Json::parse(film.tracks[0].keys[0].value)[0]["value"], 0.5);
+  EXPECT_EQ(film.tracks[0].keys[1].at, 1);
+  const std::vector<Keyframe> keyframes = keyframes_of(film);
+  ASSERT_EQ(keyframes.size(), 2U);
+  EXPECT_TRUE(keyframes[1].has_camera);
+  EXPECT_EQ(keyframes[1].targets, std::vector<std::string>{"/layers/0/isosurfaces"});
+  EXPECT_EQ(keyframe_at(keyframes, 4, 4), 1U);
+  EXPECT_FALSE(keyframe_at(keyframes, 2, 4));
+}
+
+TEST(Film, ShowsFramesToTheBitAsTheSavedSceneIsAnimated) {
+  SceneState state = steps();
+  state.set_film_length(2, 4);
+  state.set_camera(from(9, 1, 2));
+  state.set_keyframe();
+  state.show_frame(6);
+  state.set_time(2);
+  state.set_camera(from(1, 2, 9));
+  state.set_keyframe();
+  const Json track = Json::parse(animation_to_json(*state.description().animation))["tracks"][0];
+  EXPECT_EQ(track["target"], "/time");
+  EXPECT_EQ(track["keys"], Json::parse(R"([{"at": 0.0, "value": 0}, {"at": 1.5, "value": 2}])"));
+  for (const int frame : {3, 0, 5, 7}) {
+    state.show_frame(frame);
+    EXPECT_EQ(state.frame(), frame);
+    EXPECT_EQ(pixels_of(state.scene()), film_pixels(state, frame)) << frame;
+    EXPECT_EQ(state.time(), std::min(2.0, 2.0 * frame / 6)) << frame;
+  }
+  EXPECT_EQ(film_pixels(state, 7), film_pixels(state, 6));
+  EXPECT_NE(film_pixels(state, 0), film_pixels(state, 6));
+}
+
+TEST(Film, TurntableStartsFromWhatIsSeen) {
+  SceneState state = shells();
+  state.set_camera(from(4, 1, 0));
+  state.set_turntable(1);
+  const Pixels first = film_pixels(state, 0);
+  EXPECT_EQ(pixels_of(state.scene()), first);
+  state.show_frame(30);
+  EXPECT_EQ(pixels_of(state.scene()), film_pixels(state, 30));
+  EXPECT_NE(pixels_of(state.scene()), first);
+  EXPECT_EQ(film_pixels(state, 0), first);
+  // The saved scene has the camera of the start; a camera that is moved is a new one.
+  state.set_camera(from(0, 1, 4));
+  EXPECT_EQ(state.frame(), 0);
+  EXPECT_EQ(film_pixels(state, 0), pixels_of(state.scene()));
+}
+
+TEST(Film, KeyframesMoveScaleAndGo) {
+  SceneState state = shells();
+  state.set_film_length(2, 4);
+  state.set_keyframe();
+  state.show_frame(4);
+  state.set_camera(from(0, 1, 4));
+  state.set_keyframe();
+  state.move_keyframe(1, 6);
+  EXPECT_EQ(state.description().animation->cameras[1].at, 1.5);
+  EXPECT_EQ(state.frame(), 4);
+  expect_error(error_of([&] { state.move_keyframe(1, 0); }), "another one is at 0 s");
+  expect_error(error_of([&] { state.move_keyframe(2, 3); }), "there are 2 keyframes only");
+  expect_error(error_of([&] { state.delete_keyframe(7); }), "keyframe 8: there are 2");
+  expect_error(error_of([&] { state.show_frame(8); }), "there is no frame 8; it has 8");
+  state.set_film_length(4, 8);
+  EXPECT_EQ(state.description().animation->cameras[1].at, 3.0);
+  state.undo();
+  EXPECT_EQ(state.description().animation->cameras[1].at, 1.5);
+  state.undo();
+  EXPECT_EQ(state.description().animation->cameras[1].at, 1.0);
+  state.delete_keyframe(0);
+  EXPECT_EQ(state.description().animation->cameras.size(), 1U);
+  state.delete_keyframe(0);
+  EXPECT_FALSE(state.description().animation);
+  EXPECT_EQ(state.film_length().seconds, 2);
+  state.undo();
+  state.undo();
+  EXPECT_EQ(state.description().animation->cameras.size(), 2U);
+  state.remove_film();
+  EXPECT_FALSE(state.description().animation);
+}
+
+TEST(Film, AnUndoneKeyframeIsMadeAgain) {
+  SceneState state = shells();
+  state.set_keyframe();
+  state.show_frame(48);
+  state.edit({0, "isosurfaces", Json::parse(R"([{"value": 0.8}])"), 1});
+  state.set_keyframe();
+  EXPECT_EQ(state.description().animation->tracks.size(), 1U);
+  state.undo();
+  EXPECT_TRUE(state.description().animation->tracks.empty());
+  state.set_keyframe();
+  EXPECT_EQ(state.description().animation->tracks.size(), 1U);
+}
+
+TEST(Film, CamerasWithoutTimesGetEvenOnes) {
+  SceneState state = state_of(R"({"field": {"builtin": "shells", "points": 16}})",
+                              R"(, "animation": {"seconds": 4, "fps": 2, "cameras": [
+         {"camera": {"position": [4, 0, 0], "focal_point": [0, 0, 0], "up": [0, 0, 1]}},
+         {"camera": {"position": [0, 4, 0], "focal_point": [0, 0, 0], "up": [0, 0, 1]}},
+         {"camera": {"position": [0, 0, 4], "focal_point": [0, 0, 0], "up": [0, 1, 0]}}]})");
+  const Json timeline = scene_json(state, file_choices(state.description()))["timeline"];
+  EXPECT_EQ(timeline["frames"], 8);
+  ASSERT_EQ(timeline["keyframes"].size(), 3U);
+  EXPECT_EQ(timeline["keyframes"][1]["at"], 2);
+  EXPECT_EQ(timeline["keyframe"], 0);
+  state.show_frame(4);
+  EXPECT_EQ(pixels_of(state.scene()), film_pixels(state, 4));
+  state.move_keyframe(1, 2);
+  EXPECT_EQ(state.description().animation->cameras[1].at, 1.0);
+  EXPECT_EQ(state.description().animation->cameras[2].at, 4.0);
+}
+
+TEST(Film, HandWrittenTracksGetKeys) {
+  SceneState state =
+      state_of(R"({"field": {"builtin": "shells", "points": 16}, "isosurfaces": [{"value": 0.2}]})",
+               R"(, "animation": {"seconds": 1, "fps": 4, "tracks": [
+         {"target": "/layers/0/isosurfaces/0/value", "keys": [{"at": 0, "value": 0.2}]}]})");
+  state.show_frame(2);
+  state.edit({0, "isosurfaces", Json::parse(R"([{"value": 0.6}])"), 1});
+  state.set_keyframe();
+  const Animation& film = *state.description().animation;
+  ASSERT_EQ(film.tracks.size(), 1U);
+  ASSERT_EQ(film.tracks[0].keys.size(), 2U);
+  EXPECT_EQ(film.tracks[0].keys[1].value, "0.6");
+}
+
+TEST(FilmJob, MakesAFileOrSaysWhy) {
+  SceneState state = shells();
+  state.set_film_length(0.5, 4);
+  state.set_keyframe();
+  SavedFile saved;
+  std::string failure = "it has not ended";
+  int last = 0;
+  const auto run = [&](const SaveFilm& wanted, bool cancels) {
+    FilmJob job(
+        state, wanted, 1, [&](const SavedFilmProgress& progress) { last = progress.frame; },
+        [&](SavedFile file, const std::string& why) {
+          saved = std::move(file);
+          failure = why;
+        });
+    if (cancels) job.cancel();
+    while (!job.has_ended()) std::this_thread::yield();
+  };
+  run({16, 12, 1.0 / 512, "zip"}, false);
+  EXPECT_EQ(failure, "");
+  EXPECT_EQ(saved.name, "film.zip");
+  EXPECT_EQ(saved.bytes.substr(0, 2), "PK");
+  EXPECT_NE(saved.bytes.find("0001.png"), std::string::npos);
+  EXPECT_EQ(saved.bytes.find("0002.png"), std::string::npos);
+  EXPECT_EQ(last, 3);  // behind the last frame: the file is being made
+  run({4000, 4000, 1e-6, "zip"}, true);
+  expect_error(failure, "cancelled; no file is left");
+  EXPECT_TRUE(saved.bytes.empty());
+}
+
+TEST(ParseCommand, ReadsTheFilm) {
+  const auto parsed = [](const char* text) { return parse_command(text); };
+  EXPECT_EQ(std::get<SetTime>(parsed(R"({"type": "scene_time", "time": 2.5})")).time, 2.5);
+  EXPECT_EQ(std::get<ShowFilmFrame>(parsed(R"({"type": "film_frame", "frame": 7})")).frame, 7);
+  const auto move = std::get<EditFilm>(
+      parsed(R"({"type": "film", "action": "move_keyframe", "keyframe": 1, "frame": 3})"));
+  EXPECT_EQ(move.action, EditFilm::Action::move_keyframe);
+  EXPECT_EQ(move.keyframe, 1U);
+  EXPECT_EQ(move.frame, 3);
+  const auto save = std::get<SaveFilm>(parsed(
+      R"({"type": "save_film", "width": 64, "height": 48, "tolerance": 0.01, "format": "mp4"})"));
+  EXPECT_EQ(save.format, "mp4");
+  const auto refused = [&](const char* text, const char* part) {
+    expect_error(error_of([&] { parsed(text); }), part);
+  };
+  refused(R"({"type": "film_frame", "frame": -1})", "frame is -1");
+  refused(R"({"type": "film", "action": "dance"})", "must be one of set_keyframe");
+  refused(R"({"type": "film", "action": "length", "seconds": 0, "fps": 24})", "seconds is 0");
+  refused(R"({"type": "film", "action": "move_keyframe", "frame": 3})", "keyframe is missing");
+  refused(R"({"type": "save_film", "width": 0, "height": 48, "tolerance": 1, "format": "zip"})",
+          "width is 0");
+  refused(R"({"type": "save_film", "width": 9, "height": 9, "tolerance": 0.1, "format": "avi"})",
+          "must be one of webm, mp4, zip");
+  refused(R"({"type": "scene_time", "time": null})", "time is not a number");
+}
+
+}  // namespace
+}  // namespace pellucid::view::film_test
