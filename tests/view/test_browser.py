@@ -46,10 +46,16 @@ class BrowserTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
 
-    def open(self, *arguments, **options):
+    def start(self, *arguments):
         self.viewer = (ExportedPage if IN_PAGE else Viewer)(*arguments, folder=self.folder)
         self.addCleanup(self.viewer.stop)
-        page = Page(self.viewer, self.folder, **options)
+        return self.viewer
+
+    def open(self, *arguments, **options):
+        return self.show(self.start(*arguments), **options)
+
+    def show(self, viewer, **options):
+        page = Page(viewer, self.folder, **options)
         self.addCleanup(page.browser.quit)
         return page
 

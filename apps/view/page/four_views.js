@@ -184,7 +184,7 @@ export class FourViews {
     // Looks of volumes change no slice.
     const data = viewer.scene.layers.map(({transfer_function: _0, isosurfaces: _1, slices: _2,
       shading: _3, gradient_opacity: _4, clip: _5, projection: _6, ...rest}) => rest);
-    const dataKey = JSON.stringify([data, viewer.box, this.channel]);
+    const dataKey = JSON.stringify([data, viewer.box, this.channel, viewer.timeline.time]);
     const isNew = dataKey !== this.dataKey;
     this.dataKey = dataKey;
     if (isNew) this.changed();

@@ -8,6 +8,7 @@ import {OpenPanel} from './open_panel.js';
 import {Picture} from './picture.js';
 import {SavePanel} from './save_panel.js';
 import {ClipPanel, LayersPanel, LightPanel, SurfacesPanel, probeText} from './scene_panels.js';
+import {Timeline} from './timeline.js';
 import {gestureIsActive, make, shortNumber} from './elements.js';
 
 /** Largest error of a pixel at a position of the slider: ten steps to a power of ten. */
@@ -31,7 +32,8 @@ export class Viewer {
     this.addMessages();
     this.addControls();
     this.views = new FourViews(this);
-    this.panels.push(this.views);
+    this.line = new Timeline(this);
+    this.panels.push(this.views, this.line);
   }
 
   /** The scene file's object of the selected layer, and what the program says of its data. */
@@ -106,6 +108,8 @@ export class Viewer {
     this.clearProbe();
     this.functionPanel.forget();
     this.views.forget();
+    this.line.forget();
+    this.timeline = undefined;
     this.stale = true;
     this.picture.resize();
   }
@@ -114,6 +118,10 @@ export class Viewer {
     const {scene, layers, box, presets, sides} = message;
     const first = this.scene === null;
     const channels = JSON.stringify(this.layerFacts?.map((facts) => facts.channels));
+    const time = this.timeline?.time;
+    Object.assign(this, {timeline: message.timeline});
+    // Counts are of other values then; while time goes on nobody reads them.
+    if (time !== this.timeline.time && !this.line.isMoving()) this.functionPanel.forget();
     Object.assign(this, {scene, layerFacts: layers, box, presets, savable: message.savable,
       temporary: message.temporary, anatomical: message.anatomical});
     document.body.dataset.scene = 'shown';

@@ -66,6 +66,7 @@ export class LayersPanel extends Panel {
 
   fileRows(layer, i, name) {
     const {file, components, arrays, times} = this.viewer.facts(i);
+    const {follows, time: timeOfAll} = this.viewer.timeline;
     const rows = [];
     if (file && arrays.length === 0 && (layer.mesh || namesArrays.test(layer.field?.file ?? ''))) {
       rows.push(make('div', {class: 'row'}, button('Other arrays and times…',
@@ -73,7 +74,7 @@ export class LayersPanel extends Panel {
         {title: 'Reads all of the file for a list of them'})));
     }
     if (times.length > 1) {
-      const shown = layer.mesh.time ?? times[0];
+      const shown = layer.mesh.time ?? (follows[i] ? timeOfAll : times[0]);
       const nearest = times.reduce((a, b) => (Math.abs(b - shown) < Math.abs(a - shown) ? b : a));
       rows.push(labelled('Time', choice(String(nearest),
         times.map((time) => [String(time), shortNumber(time)]), `Time of ${name}`,
@@ -85,7 +86,7 @@ export class LayersPanel extends Panel {
         arrays.map((array) => [array, array]), `Array of ${name}`,
         (array) => this.viewer.choose({type: 'array', layer: i, array}))));
     }
-    if (components > 1) {
+    if (components > 1 && !follows[i]) {
       rows.push(labelled(`Step or component, 0 to ${components - 1}`, numberInput(
         layer.field?.component ?? 0, `Component of ${name}`, (component) => this.viewer.choose(
           {type: 'component', layer: i, component: Math.round(component)}),

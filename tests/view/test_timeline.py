@@ -1,0 +1,319 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Time of the data, keyframes, and films that are saved, in a real browser."""
+
+import io
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+import unittest
+import zipfile
+
+from page_driver import why_not
+from test_browser import ACCESS, IN_PAGE, BrowserTest
+from program import png
+from viewer_process import PROGRAM
+
+TIMES = [0, 0.5, 2]
+
+
+def write_steps(path, points=9):
+    """A .vti whose values are from 0 to 1, from 1 to 2 and from 2 to 3 at the three times."""
+    arrays = ""
+    for i in range(len(TIMES)):
+        values = " ".join(f"{i + (k * 37 % 97) / 97:.4f}" for k in range(points ** 3))
+        arrays += (f'<DataArray type="Float32" Name="a" format="ascii" TimeStep="{i}">{values}'
+                   "</DataArray>")
+    extent = " ".join([f"0 {points - 1}"] * 3)
+    with open(path, "w", encoding="ascii") as file:
+        file.write(f'<VTKFile type="ImageData"><ImageData WholeExtent="{extent}" Origin="0 0 0" '
+                   f'Spacing="1 1 1" TimeValues="{" ".join(map(str, TIMES))}"><Piece Extent='
+                   f'"{extent}"><PointData Scalars="a">{arrays}</PointData></Piece></ImageData>'
+                   "</VTKFile>")
+
+
+class TimelineTest(BrowserTest):
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def program(self, *arguments):
+        subprocess.run([PROGRAM, *arguments, "-q"], cwd=self.folder, check=True, timeout=900)
+
+    def program_picture(self, name):
+        with open(self.path(name), "rb") as file:
+            return png(file.read())
+
+    def move(self, page, slider, value):
+        """Moves a slider as a hand does, and waits for the exact picture."""
+        before = page.frame()
+        page.run("const input = document.getElementById(arguments[0]); input.value = arguments[1];"
+                 "input.dispatchEvent(new Event('input'));"
+                 "input.dispatchEvent(new Event('change'))", slider, value)
+        page.wait_exact(before)
+
+    def number(self, page, name, value):
+        page.run("const input = document.querySelector(`[aria-label='${arguments[0]}']`);"
+                 "input.value = arguments[1]; input.dispatchEvent(new Event('change'))",
+                 name, value)
+
+    def timeline(self, page):
+        return page.run("return viewer.timeline")
+
+    def wait_keyframes(self, page, moments):
+        page.wait_for(lambda: [round(one["at"], 6) for one in self.timeline(page)["keyframes"]]
+                      == moments, f"keyframes at {moments}")
+
+    def key(self, page, key, code, text=None):
+        for kind in ("keyDown", "keyUp"):
+            page.browser.execute_cdp_cmd("Input.dispatchKeyEvent", {
+                "type": kind, "key": key, "windowsVirtualKeyCode": code,
+                **({"text": text} if text and kind == "keyDown" else {})})
+
+    def make_keyframes(self, page, with_time):
+        """Two keyframes of a film of 8 frames: at 0 s, and at 0.75 s."""
+        page.press("#film")
+        page.wait_exact(-1)
+        self.number(page, "Length of the film in seconds", 1)
+        page.wait_for(lambda: self.timeline(page)["seconds"] == 1, "the length")
+        self.number(page, "Frames of the film in a second", 8)
+        page.wait_for(lambda: self.timeline(page)["frames"] == 8, "the frames")
+        page.press_button("Add keyframe")
+        self.wait_keyframes(page, [0])
+        self.move(page, "moment", 6)
+        if with_time:
+            self.move(page, "time", 2)
+        x, y = page.center("#picture")
+        page.wait_exact(page.drag((x, y), (x + 90, y + 30)))
+        page.press_button("Add keyframe")
+        self.wait_keyframes(page, [0, 0.75])
+
+
+class Keyframes(TimelineTest):
+    def test_a_film(self):
+        page = self.open("builtin:shells:24", window=(900, 640))
+        self.assertTrue(page.run("return document.getElementById('timeline').hidden"))
+        self.make_keyframes(page, False)
+        self.move(page, "moment", 3)
+        scene = self.check_saved_scene_is_the_frame(page)
+        self.assertEqual([key["at"] for key in scene["animation"]["cameras"]], [0, 0.75])
+        self.program("animate", "scene.json", "-o", "f/%d.png")
+        self.assertEqual(len(os.listdir(self.path("f"))), 8)
+        self.check_same(self.program_picture("f/3.png"), page.picture())
+        self.assertNotEqual(self.program_picture("f/0.png"), self.program_picture("f/3.png"))
+
+        # The mouse moves a mark, and keys do; a click goes to it; undo takes it back.
+        left, top, width, height = page.box("[data-keyframe='1']")
+        track = page.box("#moment")[2]
+        x, y = left + width / 2, top + height / 2
+        page.wait_exact(page.drag((x, y), (x - 2 * (track - 16) / 7, y)))
+        self.wait_keyframes(page, [0, 0.5])
+        self.assertEqual(self.timeline(page)["keyframe"], 1)
+        page.run("document.querySelector('[data-keyframe=\"1\"]').focus()")
+        self.key(page, "ArrowRight", 39)
+        self.wait_keyframes(page, [0, 0.625])
+        page.wait_for(lambda: page.run("return document.activeElement.dataset.keyframe") == "1",
+                      "the focus to stay")
+        page.press("#undo")
+        self.wait_keyframes(page, [0, 0.5])
+        before = page.frame()
+        page.click(*page.center("[data-keyframe='0']"))
+        page.wait_exact(before)
+        self.assertEqual(self.timeline(page)["frame"], 0)
+        page.run("document.querySelector('[data-keyframe=\"1\"]').focus()")
+        self.key(page, "Delete", 46)
+        self.wait_keyframes(page, [0])
+        page.press("#undo")
+        self.wait_keyframes(page, [0, 0.5])
+
+        # A turntable takes their place.
+        page.wait_exact(page.press_button("Turntable"))
+        self.move(page, "moment", 2)
+        self.assertIn("goes around once", page.text("#timeline .hint"))
+        scene = self.scene(page)
+        self.assertNotIn("cameras", scene["animation"])
+        self.program("animate", "scene.json", "-o", "g/%d.png")
+        self.check_same(self.program_picture("g/2.png"), page.picture())
+        page.press_button("Remove film")
+        page.wait_for(lambda: not self.timeline(page)["has_film"], "no film")
+        self.assertNotIn("animation", self.scene(page))
+        self.assertEqual(page.complaints(), [])
+
+    def test_playing(self):
+        page = self.open("builtin:shells:16", window=(900, 600))
+        self.make_keyframes(page, False)
+        page.run("window.seen = new Set(); viewer.connection.on('scene',"
+                 "({timeline}) => window.seen.add(timeline.frame));"
+                 "document.getElementById('moment').focus()")
+        self.key(page, " ", 32, " ")
+        page.wait_for(lambda: page.run("return window.seen.size") >= 3, "three frames")
+        self.assertTrue(page.run("return viewer.line.frames.isPlaying"))
+        before = page.frame()
+        self.key(page, " ", 32, " ")
+        page.wait_for(lambda: not page.run("return viewer.line.frames.isPlaying"), "a pause")
+        page.wait_exact(before - 1)
+        self.check_saved_scene_is_the_frame(page)
+        self.assertEqual(page.complaints(), [])
+
+    def test_phone_and_screen_readers(self):
+        page = self.open("builtin:shells:16", window=(390, 844))
+        page.wait_exact(page.press("#film"))
+        page.press_button("Add keyframe")
+        self.wait_keyframes(page, [0])
+        page.press_button("Save the film…")
+        for dark in ("light", "dark"):
+            page.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [
+                {"name": "prefers-color-scheme", "value": dark}]})
+            self.assertEqual(page.run(ACCESS), [], dark)
+        self.assertLessEqual(page.run("return document.documentElement.scrollWidth"), 390)
+        self.assertEqual(page.run("""
+            return [...document.querySelectorAll('button, input, select')].filter((one) =>
+              one.checkVisibility() && one.getBoundingClientRect().right > 390)
+              .map((one) => one.outerHTML.slice(0, 80));"""), [])
+        self.assertGreater(page.box("#picture")[3], 250)
+        if IN_PAGE:
+            self.assertIn("pellucid animate scene.json", page.text("#film-saver"))
+            self.assertEqual(page.run("return document.querySelectorAll('#film-saver select')"
+                                      ".length"), 0)
+
+
+@unittest.skipIf(IN_PAGE, "a page has the data of one time, and no program that saves films")
+class Films(TimelineTest):
+    def setUp(self):
+        super().setUp()
+        write_steps(self.path("s.vti"))
+
+    def files(self):
+        return {name for name in os.listdir(self.folder) if name.startswith("film.")}
+
+    def save_film(self, page, width, height, film_format):
+        if page.run("return document.getElementById('film-saver').hidden"):
+            page.press_button("Save the film…")
+        self.number(page, "Width of the film in pixels", width)
+        self.number(page, "Height of the film in pixels", height)
+        self.number(page, "Tolerance of the film", 0.01)
+        self.number(page, "Format of the film", film_format)
+        page.press("[aria-label='Begin to save the film']")
+
+    def test_steps_of_time(self):
+        page = self.open("s.vti", window=(900, 560))
+        self.assertFalse(page.run("return document.getElementById('timeline').hidden"))
+        self.assertIn("step 1 of 3", page.text("#timeline"))
+        first = page.picture()
+        self.move(page, "time", 2)
+        self.assertIn("2 · step 3 of 3", page.text("#timeline"))
+        scene = self.check_saved_scene_is_the_frame(page)
+        self.assertEqual(scene["time"], 2)
+        self.assertNotEqual(first, page.picture())
+        # The program's picture of this step alone.
+        del scene["time"]
+        scene["layers"][0]["field"]["time"] = 2
+        with open(self.path("scene.json"), "w", encoding="ascii") as file:
+            json.dump(scene, file)
+        self.program("render", "scene.json", "-o", "step.png")
+        self.assertEqual(self.program_picture("step.png"), page.picture())
+        # Slices show it too, and the keyboard moves it.
+        page.wait_exact(page.press("#four"))
+
+        def least():
+            return page.run("const {slice, isAsked, isStale} = viewer.views.slices[0];"
+                            "return slice && !isAsked && !isStale ? "
+                            "Math.min(...slice.numbers.filter((one) => !isNaN(one))) : -1")
+        page.wait_for(lambda: 2 <= least() < 3, "slices of the third step")
+        page.run("document.getElementById('time').focus()")
+        before = page.frame()
+        self.key(page, "ArrowLeft", 37)
+        page.wait_exact(before)
+        self.assertEqual(self.timeline(page)["time"], 0.5)
+        page.wait_for(lambda: 1 <= least() < 2, "slices of the second step")
+        self.assertEqual(page.complaints(), [])
+
+    def test_keyframes_move_the_time(self):
+        page = self.open("s.vti", window=(860, 600))
+        self.make_keyframes(page, True)
+        self.move(page, "moment", 3)
+        self.assertEqual(self.timeline(page)["time"], 1)
+        scene = self.check_saved_scene_is_the_frame(page)
+        self.assertEqual(scene["animation"]["tracks"], [
+            {"target": "/time", "easing": "linear",
+             "keys": [{"at": 0, "value": 0}, {"at": 0.75, "value": 2}]}])
+        self.program("animate", "scene.json", "-o", "f/%d.png")
+        self.assertEqual(self.program_picture("f/3.png"), page.picture())
+        self.assertNotEqual(self.program_picture("f/6.png"), page.picture())
+
+        # The saved pictures are those of the program, to the bit.
+        self.save_film(page, 48, 36, "zip")
+        page.wait_for(lambda: self.files() == {"film.zip"}, "film.zip")
+        time.sleep(0.3)
+        self.program("animate", "scene.json", "-o", "small/%04d.png", "--size", "48x36",
+                     "--tolerance", "0.01")
+        with open(self.path("film.zip"), "rb") as file, \
+                zipfile.ZipFile(io.BytesIO(file.read())) as archive:
+            self.assertEqual(archive.namelist(), sorted(os.listdir(self.path("small"))))
+            self.assertEqual(len(archive.namelist()), 8)
+            for name in archive.namelist():
+                self.assertEqual(png(archive.read(name)), self.program_picture(f"small/{name}"))
+        page.wait_for(lambda: "saved" in page.text("#film-saver"), "the end")
+
+        # Another program opens it again, at the step that was shown.
+        self.viewer.stop()
+        page.browser.quit()
+        again = self.open("scene.json", window=(860, 600))
+        self.wait_keyframes(again, [0, 0.75])
+        self.assertEqual(again.run("return document.querySelectorAll('.mark').length"), 2)
+        self.assertEqual(self.timeline(again)["time"], 0.5)
+        self.move(again, "moment", 6)
+        self.assertEqual(self.timeline(again)["time"], 2)
+
+    @unittest.skipIf(shutil.which("ffmpeg") is None, "ffmpeg is not installed")
+    def test_a_video_and_one_that_is_cancelled(self):
+        page = self.open("s.vti", window=(860, 600))
+        page.wait_exact(page.press("#film"))
+        page.press_button("Save the film…")
+        self.save_film(page, 32, 24, "webm")  # without keyframes: a frame of each step
+        page.wait_for(lambda: self.files() == {"film.webm"}, "film.webm")
+        page.wait_for(lambda: "saved" in page.text("#film-saver"), "the end")
+        time.sleep(0.3)
+        with open(self.path("film.webm"), "rb") as file:
+            self.assertEqual(file.read(4), b"\x1a\x45\xdf\xa3")
+        frames = subprocess.run(
+            ["ffprobe", "-v", "error", "-count_frames", "-show_entries",
+             "stream=nb_read_frames,width,height", "-of", "csv=p=0", "film.webm"],
+            cwd=self.folder, check=True, capture_output=True, text=True, timeout=100).stdout
+        self.assertEqual(frames.strip(), "32,24,3")
+        os.remove(self.path("film.webm"))
+
+        self.save_film(page, 3000, 3000, "mp4")
+        page.wait_for(lambda: "Frame 1 of 3" in page.text("#film-saver"), "the progress")
+        page.press_button("Cancel the film")
+        page.wait_for(lambda: "cancelled; no file is left" in page.text("#film-saver"), "the end")
+        self.assertEqual(self.files(), set())
+        self.assertEqual(page.text("#message"), "the film was cancelled; no file is left of it")
+
+    def test_without_ffmpeg(self):
+        os.mkdir(self.path("bin"))
+        os.symlink(shutil.which("timeout"), self.path("bin/timeout"))
+        paths = os.environ["PATH"]
+        try:
+            os.environ["PATH"] = self.path("bin")
+            viewer = self.start("s.vti")
+        finally:
+            os.environ["PATH"] = paths
+        page = self.show(viewer, window=(860, 600))
+        page.wait_exact(page.press("#film"))
+        page.press_button("Save the film…")
+        self.assertEqual(page.run("return [...document.querySelectorAll('#film-saver option')]"
+                                  ".map((one) => one.value)"), ["zip"])
+        self.assertIn("need the program ffmpeg", page.text("#film-saver"))
+
+
+if __name__ == "__main__":
+    reason = why_not()
+    if reason:
+        print(f"skipped: {reason} (scripts/install-packages browser)")
+        sys.exit(77)
+    if IN_PAGE and not os.path.exists(os.environ["PELLUCID_PAGE"]):
+        print("skipped: there is no page; scripts/build-web builds it")
+        sys.exit(77)
+    unittest.main(verbosity=2)
