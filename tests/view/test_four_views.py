@@ -277,7 +277,8 @@ class FourViews(BrowserTest):
         page = self.open_views("labels.json", window=(1100, 800))
         for axis in range(3):
             self.go_to(page, axis, self.world_of((5, 5, 5))[axis])
-        page.wait_for(lambda: "cube" in page.text("#readout"), "the name")
+        # On the way there the crosshair was in the cube already.
+        page.wait_for(lambda: "voxel 5, 5, 5 " in page.text("#readout"), "the voxel")
         self.assertRegex(page.text("#readout"), r"voxel 5, 5, 5 .*label 3 cube")
         for axis in range(3):
             r, g, b = page.run(f"""
