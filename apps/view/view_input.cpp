@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "pellucid/io/film.h"
 #include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/io/internal/color_data.h"
 #include "pellucid/io/read_mesh.h"
@@ -48,6 +49,8 @@ ViewedScene view_input(const std::string& input, const ParallelFor& parallel) {
   ViewedScene viewed;
   SceneDescription& description = viewed.description;
   description = describe(input, look);
+  resolve_time(description);
+  set_first_step(description);
   viewed.keeps_camera = description.camera.has_value();
   const std::vector<std::optional<Layer>> loaded =
       suggest_missing_functions(description, parallel, [](std::vector<ChannelSource>&) {});

@@ -39,10 +39,10 @@ class SourceTimes : public test::ScratchFolder {
   /// Expects that each of the steps 3, 1 and 2, in this order in the file, has ten times its time.
   static void expect_steps(const fs::path& file) {
     EXPECT_EQ(field(file), (Times{1, 2, 3})) << file;
-    for (const double time : {1.0, 2.0, 3.0, 1.2, 2.6, -9.0, 99.0}) {
+    for (const double time : {1.0, 2.0, 3.0, 1.2, 1.5, 2.5, 2.6, -9.0, 99.0, -1e17, 1e17}) {
       ReadOptions options;
       options.time = time;
-      const double nearest = std::min(std::max(std::round(time), 1.0), 3.0);
+      const double nearest = std::min(std::max(std::ceil(time - 0.5), 1.0), 3.0);
       EXPECT_EQ(test::value_at(read_volume(file, options), 1, 0, 1), 10 * nearest) << file << time;
     }
     ReadOptions between;

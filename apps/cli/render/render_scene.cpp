@@ -470,7 +470,10 @@ SceneRequest request_scene(const RenderArguments& arguments) {
   PreparedScene& prepared = request.prepared;
   prepared.description = describe(arguments, prepared.import_notes);
   SceneDescription& description = prepared.description;
-  if (!arguments.mesh.has_times) resolve_time(description);
+  if (!arguments.mesh.has_times) {
+    resolve_time(description);
+    if (arguments.suggests_functions) set_first_step(description);
+  }
   const int threads = arguments.threads > 0 ? arguments.threads : default_thread_count();
   if (arguments.suggests_functions) {
     request.loaded = view::suggest_missing_functions(

@@ -40,6 +40,9 @@ class SceneTimes {
 void resolve_time(SceneDescription& description);
 
 /// Has data that a film moves, which have no time yet, read at its first frame's.
+/// Gives the sources that have steps, and no time of their own, the time of the first one. Data
+/// whose times cannot be listed stay as they are.
+void set_first_step(SceneDescription& description);
 void set_first_time(const Animation& film, SceneDescription& description);
 
 /// Returns the film of a scene that has no animation: one frame for each time if its data have

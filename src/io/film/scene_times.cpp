@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "axes/time_steps.h"
+#include "meshes/mesh_blocks.h"
 #include "pellucid/io/film.h"
 #include "pellucid/io/time_steps.h"
 #include "pellucid/scene/error.h"
@@ -31,13 +31,6 @@ bool has_component(const FieldSource& source) {
 }
 bool has_component(const MeshSource&) {
   return false;
-}
-
-/// Returns the time that is nearest to a moment, of two as near the earlier.
-double nearest(const std::vector<double>& times, double moment) {
-  return *std::min_element(times.begin(), times.end(), [&](double a, double b) {
-    return std::pair(std::abs(a - moment), a) < std::pair(std::abs(b - moment), b);
-  });
 }
 
 }  // namespace
@@ -68,7 +61,7 @@ void SceneTimes::set(SceneDescription& description, double moment) const {
       if (!times->empty()) {
         options.time = options.time_between == TimeBetween::linear
                            ? std::clamp(moment, times->front(), times->back())
-                           : nearest(*times, moment);
+                           : (*times)[nearest_step(*times, moment)];
       }
       ++times;
     });
@@ -89,6 +82,17 @@ void set_first_time(const Animation& film, SceneDescription& description) {
   const SceneTimes times(description);
   if (times.all().empty()) return;
   times.set(description, film.time ? (*film.time)[0] : times.all().front());
+}
+
+void set_first_step(SceneDescription& description) {
+  const auto& film = description.animation;
+  if (description.time || (film && film->moves_data())) return;
+  try {
+    const SceneTimes times(description);
+    if (!times.all().empty()) times.set(description, times.all().front());
+  } catch (const Error&) {
+    // Reading the data says what is wrong with them.
+  }
 }
 
 void resolve_time(SceneDescription& description) {

@@ -35,15 +35,19 @@ void name_cells_apart(std::vector<MeshArray>& arrays);
 /// and the first of them. Returns an empty text if there are none.
 std::string trimmed_note(const MeshFile& file, std::size_t cells);
 
-/// Returns the index of the step nearest to `wanted`, the earlier of two; the first where nothing
-/// is wanted. `times` is not empty.
+/// Returns the index of the step nearest to `wanted`, of two as near the one of the earlier time;
+/// the first where nothing is wanted. `times` is not empty.
 inline std::size_t nearest_step(const std::vector<double>& times,
                                 std::optional<double> wanted) noexcept {
   if (!wanted) return 0;
+  const double moment = *wanted;
   const auto nearest = std::min_element(times.begin(), times.end(), [&](double a, double b) {
     // A time that is missing is none.
     if (std::isnan(a) || std::isnan(b)) return std::isnan(b) && !std::isnan(a);
-    return std::abs(a - *wanted) < std::abs(b - *wanted);
+    const double from_a = std::abs(a - moment), from_b = std::abs(b - moment);
+    if (from_a != from_b) return from_a < from_b;
+    // Far away distances are rounded to the same.
+    return a <= moment && b <= moment ? a > b : a < b;
   });
   return static_cast<std::size_t>(nearest - times.begin());
 }
