@@ -191,8 +191,10 @@ void FilmRun::tell(const std::string& path) const {
   if (arguments_.scene.quiet) return;
   for (const std::string& note : notes_) print_note(note);
   const Integration& integration = prepared_.scene.integration;
-  std::string text = fmt::format("{}: {} frames, {:.3g} s", path, film_->frames(),
-                                 film_->frames() / animation_.fps);
+  const int frames = film_->frames(), own = share_.count(frames);
+  std::string text =
+      fmt::format("{}: {}{} frames, {:.3g} s", path,
+                  own == frames ? "" : fmt::format("{} of ", own), frames, frames / animation_.fps);
   if (frames_->kept() > 0) text += fmt::format("; {} were there", frames_->kept());
   if (frames_->made() > 0 && prepared_.knows_its_error(arguments_.scene)) {
     text += fmt::format("; largest error of a pixel {:.3g}, tolerance {:.3g}",

@@ -8,6 +8,7 @@
 
 #include "pellucid/io/remake_scene.h"
 #include "pellucid/scene/error.h"
+#include "text/printable.h"
 
 namespace pellucid {
 namespace {
@@ -88,6 +89,14 @@ json mixed(const json& a, const json& b, double share) {
   return made;
 }
 
+/// Puts a value at its place. A key of the scene or of a layer that is null then is absent.
+void put_value(json& document, const std::vector<std::string>& tokens, json value) {
+  const bool is_absent =
+      value.is_null() && (tokens.size() == 1 || (tokens.size() == 3 && tokens[0] == "layers"));
+  place_of(document, tokens) = std::move(value);
+  if (is_absent) place_of(document, {tokens.begin(), tokens.end() - 1}).erase(tokens.back());
+}
+
 /// A track as it is evaluated.
 struct MovingPart {
   std::vector<std::string> tokens;
@@ -153,7 +162,7 @@ struct Film::Document {
 
   SceneDescription scene_at(double seconds, const std::string& name) const {
     json scene = base;
-    for (const MovingPart& part : parts) place_of(scene, part.tokens) = part.at(seconds);
+    for (const MovingPart& part : parts) put_value(scene, part.tokens, part.at(seconds));
     return parse_scene(scene.dump(), name);
   }
 };
@@ -185,8 +194,8 @@ Film::Film(const SceneDescription& written, const SceneDescription& complete,
       place_of(base, part.tokens);
       document_->parts.push_back(std::move(part));
     } catch (const Error& error) {
-      throw Error("animation: track " + std::to_string(i + 1) + ", target " + track.target + ": " +
-                  error.what());
+      throw Error("animation: track " + std::to_string(i + 1) + ", target " +
+                  printable(track.target) + ": " + error.what());
     }
   }
   if (!animation.cameras.empty()) {
