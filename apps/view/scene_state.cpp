@@ -284,6 +284,11 @@ void SceneState::remember(SceneDescription before, int gesture) {
 void SceneState::step(std::vector<Step>& from, std::vector<Step>& to) {
   if (from.empty()) return;
   auto [next, keyed] = from.back();
+  const auto moves_data = [](const SceneDescription& scene) {
+    return scene.animation && scene.animation->moves_data();
+  };
+  // Choosing a time is no step, but a film may have changed it.
+  const std::optional<double> time = moves_data(description_) ? next.time : description_.time;
   next.time = description_.time;
   next.size = description_.size;
   next.integration = description_.integration;
@@ -292,8 +297,12 @@ void SceneState::step(std::vector<Step>& from, std::vector<Step>& to) {
   from.pop_back();
   to.push_back({std::move(before), std::exchange(keyed_, std::move(keyed))});
   last_gesture_ = no_gesture;
-  if (!description_.animation || !description_.animation->turntable) turntable_camera_.reset();
-  clamp_frame();
+  if (time != description_.time) {
+    SceneDescription then = description_;
+    then.time = time;
+    load(std::move(then));
+  }
+  show_film();
 }
 
 void SceneState::undo() {
@@ -318,7 +327,9 @@ SceneDescription SceneState::portable_description() const {
 
 std::string SceneState::saved() const {
   check_has_sources(description_);
-  return scene_to_json(portable_description());
+  SceneDescription description = portable_description();
+  if (length_is_set_ && !description.animation) description.animation = film_to_save();
+  return scene_to_json(description);
 }
 
 }  // namespace pellucid::view

@@ -108,7 +108,8 @@ class SceneState {
   bool has_temporary_folder() const noexcept { return !temporary_.empty(); }
   /// Returns the description with absolute paths; those in the temporary folder are relative to it.
   SceneDescription portable_description() const;
-  /// Returns that as a scene file. Throws Error if data are arrays.
+  /// Returns that as a scene file, with the film of a length that was chosen even if nothing of it
+  /// has keyframes. Throws Error if data are arrays.
   std::string saved() const;
   /// Returns the layer's function in JSON, by which it is known again; empty if there is none.
   std::string function_text(std::size_t layer) const;
@@ -143,6 +144,10 @@ class SceneState {
   /// Returns the scene that frames are made from: with the camera of a turntable's start.
   SceneDescription film_base() const;
   void set_film(std::optional<Animation> film);
+  /// Returns whether the data are shown at another time than a film that moves them evenly says.
+  bool has_chosen_time(const Animation& film) const;
+  /// Shows the frame of the timeline's moment, or the nearest one that the film has.
+  void show_film();
   void clamp_frame();
 
   SceneDescription description_;
@@ -151,7 +156,7 @@ class SceneState {
   SceneTimes times_;                  ///< Times of the sources that follow the scene's time
   std::shared_ptr<const Film> film_;  ///< Film of the animation; null: not made yet
   Animation new_film_;                ///< without keyframes
-  bool length_is_set_ = false;        ///< True once the user chose that of new_film_
+  bool length_is_set_ = false;        ///< True once the user chose a length
   int frame_ = 0;
   std::optional<Camera> turntable_camera_;  ///< Camera of a turntable's start, once turned
   Json keyed_;                              ///< keyed_parts() of the last keyframe

@@ -118,6 +118,7 @@ void SceneState::show_frame(int frame) {
   times_.clear(next);
   const std::optional<double> time = film_->time(frame);
   next.time = time ? time : description_.time;
+  const bool goes_on = frame != frame_;
   const bool moves_camera = animation.turntable || !animation.cameras.empty() ||
                             std::ranges::any_of(animation.tracks, [](const AnimationTrack& track) {
                               return track.target.starts_with("/camera");
@@ -127,6 +128,14 @@ void SceneState::show_frame(int frame) {
   load(std::move(next));
   if (animation.turntable) turntable_camera_ = still;
   frame_ = frame;
+  // What was changed and is in no keyframe was seen to be so in the whole film.
+  if (goes_on) keyed_ = keyed_parts(with_time());
+}
+
+bool SceneState::has_chosen_time(const Animation& film) const {
+  if (!(film.time || film.by_steps) || !description_.time) return false;
+  const std::optional<double> shown = make_film(film).time(frame_);
+  return shown && *shown != *description_.time;
 }
 
 void SceneState::set_keyframe() {
@@ -134,6 +143,19 @@ void SceneState::set_keyframe() {
   const std::vector<Keyframe> keyframes = keyframes_of(film);
   const auto there = keyframe_at(keyframes, frame_, film.fps);
   const double at = there ? keyframes[*there].at : std::min(seconds(), film.seconds);
+  if (has_chosen_time(film)) {
+    if (film.by_steps) {
+      throw Error(
+          "time: the film shows all steps evenly, whatever time is chosen; remove the film to put "
+          "times into keyframes");
+    }
+    const auto [first, last] = *film.time;
+    const double end = (frame_count(film) - 1) / film.fps;
+    AnimationTrack track{time_target, Easing::linear, {{0, Json(first).dump()}}};
+    if (end > 0) track.keys.push_back({end, Json(last).dump()});
+    film.tracks.push_back(std::move(track));
+    film.time.reset();
+  }
   film = with_keyframe(std::move(film), at, with_time(), keyed_);
   set_film(std::move(film));
   keyed_ = keyed_parts(with_time());
@@ -151,7 +173,11 @@ void SceneState::delete_keyframe(std::size_t keyframe) {
 }
 
 void SceneState::set_film_length(double seconds, double fps) {
-  if (description_.animation) return set_film(with_length(*description_.animation, seconds, fps));
+  if (description_.animation) {
+    set_film(with_length(*description_.animation, seconds, fps));
+    length_is_set_ = true;
+    return;
+  }
   Animation film = new_film_;
   film.seconds = seconds;
   film.fps = fps;
@@ -165,16 +191,17 @@ void SceneState::set_turntable(double turns) {
   film.cameras.clear();
   film.is_closed = false;
   film.turntable = Turntable{turns, {}};
-  set_film(std::move(film));
   frame_ = 0;
+  set_film(std::move(film));
 }
 
 void SceneState::remove_film() {
   if (!description_.animation) return;
   new_film_ = Animation{};
-  new_film_.seconds = description_.animation->seconds;
-  new_film_.fps = description_.animation->fps;
-  length_is_set_ = false;
+  if (length_is_set_) {
+    new_film_.seconds = description_.animation->seconds;
+    new_film_.fps = description_.animation->fps;
+  }
   set_film(std::nullopt);
 }
 
@@ -188,8 +215,13 @@ void SceneState::set_film(std::optional<Animation> film) {
   remember(description_, no_gesture);
   description_.animation = std::move(film);
   film_ = std::move(made);
+  show_film();
+}
+
+void SceneState::show_film() {
   if (!description_.animation || !description_.animation->turntable) turntable_camera_.reset();
   clamp_frame();
+  if (description_.animation) show_frame(frame_);
 }
 
 void SceneState::clamp_frame() {

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <thread>
@@ -17,6 +19,7 @@
 #include "view/film/keyframes.h"
 #include "view/scene_facts.h"
 #include "view/scene_state.h"
+#include "view/view_input.h"
 
 namespace pellucid::view::film_test {
 namespace {
@@ -145,6 +148,45 @@ TEST(Time, StaysWhenEditsAreUndone) {
   EXPECT_EQ(pixels_of(state.scene()), pixels_of(make_scene(parse_scene(state.saved(), "saved"))));
 }
 
+/// A NIfTI of three volumes in time, 2 s apart, of 4 x 4 x 4 floats that are the volume's number.
+fs::path nifti_with_steps() {
+  static const TemporaryFolder folder("NIfTI of a test");
+  std::string bytes(352, '\0');
+  const auto put = [&](std::size_t at, auto value) {
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+  };
+  put(0, std::int32_t{348});
+  constexpr std::array<std::int16_t, 5> sides{4, 4, 4, 4, 3};
+  for (std::size_t i = 0; i < sides.size(); ++i) put(40 + 2 * i, sides[i]);
+  put(70, std::int16_t{16});  // float
+  put(72, std::int16_t{32});
+  for (std::size_t i = 0; i < 5; ++i) put(76 + 4 * i, i == 4 ? 2.0F : 1.0F);
+  put(108, 352.0F);
+  bytes[123] = 2 | 8;  // mm and s
+  bytes.replace(344, 3, "n+1");
+  for (int step = 0; step < 3; ++step) {
+    for (int i = 0; i < 64; ++i) {
+      const float value = static_cast<float>(step) + static_cast<float>(i) / 64;
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+  }
+  const fs::path path = folder.path() / "steps.nii";
+  write_text_file(path, bytes);
+  return path;
+}
+
+TEST(Time, OfFilesThatAreOpenedIsTheFirst) {
+  for (const fs::path& file : {nifti_with_steps(), file_with_steps()}) {
+    ViewedScene viewed = view_input(file.string(), {});
+    SceneState state(std::move(viewed.description), std::move(viewed.scene), {});
+    EXPECT_EQ(state.times().size(), 3U) << file;
+    EXPECT_EQ(state.time(), 0) << file;
+    const Pixels first = pixels_of(state.scene());
+    state.set_time(state.times()[2]);
+    EXPECT_NE(pixels_of(state.scene()), first) << file;
+  }
+}
+
 TEST(Film, KeyframesHoldCameraAndWhatChanged) {
   SceneState state = shells();
   state.set_film_length(2, 4);
@@ -254,6 +296,148 @@ TEST(Film, AnUndoneKeyframeIsMadeAgain) {
   EXPECT_TRUE(state.description().animation->tracks.empty());
   state.set_keyframe();
   EXPECT_EQ(state.description().animation->tracks.size(), 1U);
+}
+
+TEST(Film, KeyframesHoldWhatASceneLacks) {
+  // Without shading and lights first, with them later.
+  SceneState state = state_of(R"({"field": {"builtin": "shells", "points": 16},
+                                  "isosurfaces": [{"value": 0.5}]})");
+  state.set_film_length(1, 8);
+  state.set_keyframe();
+  const Pixels unlit = pixels_of(state.scene());
+  state.show_frame(6);
+  state.edit({0, "shading", Json::parse(R"({"diffuse": 0.9})"), 1});
+  state.edit(
+      {{}, "lights", Json::parse(R"([{"type": "directional", "direction": [0, 1, 1]}])"), 2});
+  state.set_keyframe();
+  const Pixels lit = pixels_of(state.scene());
+  EXPECT_NE(lit, unlit);
+  EXPECT_EQ(state.description().animation->tracks.size(), 2U);
+  state.show_frame(0);
+  EXPECT_EQ(pixels_of(state.scene()), unlit);
+  EXPECT_EQ(film_pixels(state, 0), unlit);
+  EXPECT_EQ(film_pixels(state, 5), unlit);
+  EXPECT_EQ(film_pixels(state, 6), lit);
+  // The other way round.
+  SceneState back = shells();
+  back.set_film_length(1, 8);
+  back.set_keyframe();
+  const Pixels shaded = pixels_of(back.scene());
+  back.show_frame(6);
+  back.edit({0, "shading", nullptr, 1});
+  back.set_keyframe();
+  EXPECT_EQ(film_pixels(back, 0), shaded);
+  EXPECT_NE(film_pixels(back, 6), shaded);
+}
+
+TEST(Film, ChangesThatWereSeenInTheWholeFilmStay) {
+  SceneState state = shells();
+  state.set_film_length(1, 8);
+  state.set_keyframe();
+  state.show_frame(6);
+  state.set_keyframe();
+  state.edit({0, "isosurfaces", Json::parse(R"([{"value": 0.8}])"), 1});
+  state.show_frame(0);
+  const Pixels seen = pixels_of(state.scene());
+  state.show_frame(3);
+  state.set_keyframe();
+  EXPECT_TRUE(state.description().animation->tracks.empty());
+  EXPECT_EQ(film_pixels(state, 0), seen);
+  EXPECT_EQ(film_pixels(state, 6), seen);
+}
+
+TEST(Film, ChangesShowTheFramesOfTheFilm) {
+  SceneState state = shells();
+  state.set_film_length(2, 4);
+  state.set_camera(from(4, 0, 1));
+  state.set_keyframe();
+  state.show_frame(6);
+  state.set_camera(from(0, 1, 4));
+  state.set_keyframe();
+  state.show_frame(3);
+  const auto expect_shown = [&](const char* what) {
+    EXPECT_EQ(pixels_of(state.scene()), film_pixels(state, state.frame())) << what;
+  };
+  state.move_keyframe(1, 4);
+  expect_shown("moved");
+  state.undo();
+  expect_shown("undone");
+  state.redo();
+  expect_shown("made again");
+  state.set_film_length(3, 4);
+  expect_shown("longer");
+  state.delete_keyframe(1);
+  expect_shown("deleted");
+  // An edit that is in no keyframe is gone with its moment, also from the history.
+  state.undo();
+  state.show_frame(2);
+  state.set_camera(from(4, 0, 1));
+  state.undo();
+  expect_shown("undone elsewhere");
+}
+
+TEST(Film, AnUndoneKeyframeLeavesTheTimeThatWasChosen) {
+  SceneState state = steps();
+  state.set_film_length(2, 4);
+  state.set_keyframe();
+  state.show_frame(6);
+  state.set_time(2);
+  state.set_keyframe();
+  state.show_frame(3);
+  EXPECT_EQ(state.time(), 1);
+  state.undo();
+  EXPECT_EQ(state.time(), 2);
+  EXPECT_EQ(pixels_of(state.scene()), film_pixels(state, 3));
+}
+
+TEST(Film, TimesOfAFilmThatMovesEvenlyBecomeKeys) {
+  SceneState state = steps(R"(, "animation": {"seconds": 2, "fps": 4, "time": [0, 2]})");
+  const Pixels end = film_pixels(state, 7);
+  state.show_frame(4);
+  EXPECT_DOUBLE_EQ(state.time(), 8.0 / 7);
+  state.set_time(0.5);
+  state.set_keyframe();
+  const Animation& film = *state.description().animation;
+  EXPECT_FALSE(film.time);
+  ASSERT_EQ(film.tracks.size(), 1U);
+  EXPECT_EQ(film.tracks[0].keys.size(), 3U);
+  state.show_frame(0);
+  state.show_frame(4);
+  EXPECT_EQ(state.time(), 0.5);
+  EXPECT_EQ(film_pixels(state, 7), end);
+  SceneState even = steps(R"(, "animation": {"seconds": 2, "fps": 4, "time": "steps"})");
+  even.show_frame(0);
+  even.set_time(2);
+  expect_error(error_of([&] { even.set_keyframe(); }), "shows all steps evenly");
+}
+
+TEST(Film, TracksOfTheCameraKeepMovingIt) {
+  SceneState state = state_of(R"({"field": {"builtin": "shells", "points": 16}})",
+                              R"(, "animation": {"seconds": 2, "fps": 4, "tracks": [
+      {"target": "/camera/vertical_angle", "keys": [{"at": 0, "value": 10},
+                                                    {"at": 2, "value": 40}]}]})");
+  const Pixels first = film_pixels(state, 0), last = film_pixels(state, 7);
+  EXPECT_NE(first, last);
+  state.show_frame(4);
+  state.set_keyframe();
+  EXPECT_TRUE(state.description().animation->cameras.empty());
+  EXPECT_EQ(state.description().animation->tracks[0].keys.size(), 3U);
+  EXPECT_EQ(film_pixels(state, 0), first);
+  EXPECT_EQ(film_pixels(state, 7), last);
+}
+
+TEST(Film, AChosenLengthIsSaved) {
+  SceneState state = steps();
+  EXPECT_FALSE(parse_scene(state.saved(), "saved").animation);
+  state.set_film_length(2, 10);
+  const Animation saved = *parse_scene(state.saved(), "saved").animation;
+  EXPECT_EQ(frame_count(saved), 20);
+  EXPECT_EQ(animation_to_json(saved), animation_to_json(state.film_to_save()));
+  SceneState turned = shells();
+  turned.set_turntable(1);
+  turned.remove_film();
+  EXPECT_EQ(turned.film_length().seconds, turned.film_to_save().seconds);
+  EXPECT_FALSE(parse_scene(turned.saved(), "saved").animation);
 }
 
 TEST(Film, CamerasWithoutTimesGetEvenOnes) {

@@ -17,7 +17,7 @@ namespace {
 
 using Pointer = Json::json_pointer;
 
-/// Parts of a layer that keyframes hold, and what stands for one that is missing; null: nothing.
+/// Parts of a layer that keyframes hold, and what stands for one that is missing.
 struct Part {
   const char* key;
   const char* missing;
@@ -26,6 +26,7 @@ constexpr std::array layer_parts{Part{"visible", "true"},   Part{"transfer_funct
                                  Part{"isosurfaces", "[]"}, Part{"slices", "[]"},
                                  Part{"shading", "null"},   Part{"clip", "[]"}};
 constexpr std::array scene_parts{Part{"time", "null"}, Part{"clip", "[]"}, Part{"lights", "null"}};
+constexpr std::string_view camera_target = "/camera";
 
 /// Returns whether two moments are one: a millionth of a second apart or less. Those of cameras are
 /// optional, but given here.
@@ -85,7 +86,8 @@ bool overlap(std::string_view a, std::string_view b) {
 void add_parts(const Json& object, const std::string& place, const Part& part, Json& parts) {
   const auto found = object.find(part.key);
   Json value = found != object.end() ? *found : Json::parse(part.missing);
-  if (!value.is_null()) parts[place + part.key] = std::move(value);
+  std::string target = place + part.key;
+  if (target != time_target || !value.is_null()) parts[std::move(target)] = std::move(value);
 }
 
 /// Returns the document of a scene, in which what is missing and can be keyed has its default.
@@ -107,11 +109,13 @@ Json parts_of(const Json& document) {
   return parts;
 }
 
-/// Returns what a target has now; null: nothing.
-Json value_at(const Json& document, const Json& parts, const std::string& target) {
+/// Returns what a target has now, null for a part that the scene lacks; none: there is no such
+/// target.
+std::optional<Json> value_at(const Json& document, const Json& parts, const std::string& target) {
   if (const auto part = parts.find(target); part != parts.end()) return *part;
   const Pointer pointer(target);
-  return document.contains(pointer) ? document.at(pointer) : Json();
+  if (document.contains(pointer)) return document.at(pointer);
+  return std::nullopt;
 }
 
 }  // namespace
@@ -153,12 +157,16 @@ Animation with_keyframe(Animation film, double at, const SceneDescription& scene
   }
   film.turntable.reset();
   give_cameras_times(film);
-  put_key(film.cameras, CameraKey{*scene.camera, at});
+  const bool has_camera_tracks =
+      film.cameras.empty() && std::ranges::any_of(film.tracks, [](const AnimationTrack& track) {
+        return overlap(track.target, camera_target);
+      });
+  if (!has_camera_tracks) put_key(film.cameras, CameraKey{*scene.camera, at});
   const Json document = document_of(scene);
   const Json parts = parts_of(document);
   for (AnimationTrack& track : film.tracks) {
-    const Json value = value_at(document, parts, track.target);
-    if (!value.is_null()) put_key(track.keys, AnimationTrack::Key{at, value.dump()});
+    const std::optional<Json> value = value_at(document, parts, track.target);
+    if (value) put_key(track.keys, AnimationTrack::Key{at, value->dump()});
   }
   for (const auto& part : parts.items()) {
     const std::string& target = part.key();

@@ -26,13 +26,13 @@ std::optional<std::size_t> keyframe_at(const std::vector<Keyframe>& keyframes, i
 
 /// Returns what a keyframe may hold besides the camera, by JSON pointer: "/time" where there is
 /// one, "/clip", "/lights", and of each layer "visible", "transfer_function", "isosurfaces",
-/// "slices", "shading" and "clip".
+/// "slices", "shading" and "clip". What the scene lacks is null.
 Json keyed_parts(const SceneDescription& scene);
 
 /// Returns the film with the scene's camera and the values of all tracks at a moment; keys that are
 /// there then are replaced. A part that differs from `last_parts`, which are keyed_parts() of the
 /// keyframe before, gets a track: with the values of `last_parts` at all other keyframes. A
-/// turntable gives way. `scene` has a camera.
+/// turntable gives way, but tracks that move parts of the camera do not. `scene` has a camera.
 Animation with_keyframe(Animation film, double at, const SceneDescription& scene,
                         const Json& last_parts);
 /// Returns the film with a keyframe at another moment. Throws Error if there is no such keyframe,
