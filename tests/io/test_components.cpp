@@ -58,7 +58,7 @@ class ComponentsTest : public test::ScratchFolder {
     const std::string last = std::to_string(components - 1);
     if (components > 1) {
       const std::string text = error(name, options);
-      EXPECT_TRUE(contains(text, "choose a component, 0 to " + last)) << text;
+      EXPECT_TRUE(contains(text, "component, 0 to " + last)) << text;
     }
     for (int c = 0; c < components; ++c) {
       const Volume& volume = all[static_cast<std::size_t>(c)];
@@ -189,6 +189,7 @@ TEST_F(ComponentsTest, OfNiftiAreAnAxisBehindTheThird) {
   write("t.nii", file.with(data));
   expect_components("t.nii", 3, "f32");
   EXPECT_TRUE(contains(error("t.nii"), "3 time steps (axis 4)"));
+  EXPECT_TRUE(contains(error("t.nii"), "choose a time, or a component, 0 to 2"));
   write("t.nii.gz", gzipped(file.with(data)));
   expect_components("t.nii.gz", 3, "f32");
   file.vox_offset = 0;

@@ -232,7 +232,8 @@ Volume read_chosen(const VolumeFile& file, const ReadOptions& options) {
   const std::optional<int> chosen = chosen_component(file, options);
   if (!chosen && file.components > 1) {
     throw Error(file.description.name + ": holds " + file.holds +
-                ", but one number at each point is needed; choose a component, " + choices(file) +
+                ", but one number at each point is needed; choose a " +
+                (file.times.empty() ? "" : "time, or a ") + "component, " + choices(file) +
                 ", or save one of them as a file of its own");
   }
   const int component = chosen.value_or(0);
