@@ -212,6 +212,9 @@ EditFilm read_film(Members& members) {
   if (edit.action == Action::move_keyframe || edit.action == Action::delete_keyframe) {
     edit.keyframe = static_cast<std::size_t>(members.integer("keyframe", 0, most_frames));
   }
+  if (edit.action == Action::set_keyframe && members.has("keyframe")) {
+    edit.chosen = static_cast<std::size_t>(members.integer("keyframe", 0, most_frames));
+  }
   if (edit.action == Action::move_keyframe) edit.frame = members.integer("frame", 0, most_frames);
   if (edit.action == Action::turntable) edit.turns = members.number("turns", -1e4, 1e4);
   if (edit.action == Action::length) {
@@ -326,6 +329,7 @@ constexpr Kind kinds[] = {
     {"film", [](Members& m) -> Command { return read_film(m); }},
     {"save_film", [](Members& m) -> Command { return read_save_film(m); }},
     {"cancel_film", [](Members&) -> Command { return CancelFilm{}; }},
+    {"film_taken", [](Members&) -> Command { return TakeFilm{}; }},
     {"list_file", [](Members& m) -> Command { return ListFile{m.layer()}; }},
     {"list_folder", [](Members& m) -> Command { return ListFolder{m.path("folder", 0)}; }},
     {"open", [](Members& m) -> Command { return OpenFile{m.path("input", 1)}; }},

@@ -155,6 +155,8 @@ struct EditFilm {
   enum class Action { set_keyframe, move_keyframe, delete_keyframe, length, turntable, remove };
   Action action;
   std::size_t keyframe = 0;
+  /// Keyframe that set_keyframe renews; none: that of the present moment, or a new one.
+  std::optional<std::size_t> chosen{};
   int frame = 0;                ///< to which the keyframe moves
   double seconds = 0, fps = 0;  ///< Length and rate of the film
   double turns = 1;             ///< Number of turns of the turntable
@@ -168,6 +170,8 @@ struct SaveFilm {
 inline constexpr std::array film_formats{"webm", "mp4", "zip"};
 /// Ends the film that is being saved, if there is one.
 struct CancelFilm {};
+/// Tells that the page has the file of a film.
+struct TakeFilm {};
 /// Asks for the arrays of a layer's file, and the times of a mesh. All of the file is read for it.
 struct ListFile {
   std::size_t layer;
@@ -196,7 +200,7 @@ using Command =
                  SetTolerance, Edit, Undo, Redo, Suggest, CancelFit, ImportFunction, ExportFunction,
                  AskHistogram, AskThumbnail, Probe, AskSlice, Locate, DragHandle, ShowErrorMap,
                  ChooseComponent, ChooseArray, ChooseTime, SetTime, ShowFilmFrame, EditFilm,
-                 SaveFilm, CancelFilm, ListFile, ListFolder, OpenFile, OpenUpload, Save>;
+                 SaveFilm, CancelFilm, TakeFilm, ListFile, ListFolder, OpenFile, OpenUpload, Save>;
 
 /// Largest message of a page, in bytes: an imported color map with some ten thousand nodes.
 inline constexpr std::size_t largest_message = std::size_t(2) << 20;

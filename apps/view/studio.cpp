@@ -51,7 +51,8 @@ bool only_asks(const Command& command) {
          std::holds_alternative<ExportFunction>(command) ||
          std::holds_alternative<ListFile>(command) || std::holds_alternative<CancelFit>(command) ||
          std::holds_alternative<EditFilm>(command) || std::holds_alternative<SaveFilm>(command) ||
-         std::holds_alternative<CancelFilm>(command) || starts_fit(command);
+         std::holds_alternative<CancelFilm>(command) || std::holds_alternative<TakeFilm>(command) ||
+         starts_fit(command);
 }
 
 /// Tells whether a command ends the frame that is being rendered: it changes it, or begins a fit.
@@ -232,6 +233,7 @@ struct Studio::Visitor {
   void operator()(const EditFilm& c) const { studio.edit_film(c); }
   void operator()(const SaveFilm& c) const { studio.save_film(page, c); }
   void operator()(const CancelFilm&) const { studio.cancel_film(); }
+  void operator()(const TakeFilm&) const { studio.forget_film(page); }
   void operator()(const ChooseTime& c) const {
     if (studio.state_.follows_time(studio.state_.checked_layer(c.layer))) {
       return studio.state_.set_time(c.time);
@@ -305,12 +307,16 @@ void Studio::page_opened(PageId page, std::uint64_t number) {
     ++pages_;
   }
   wakes_.notify_one();
+  tell_of_film(page);
 }
 
 void Studio::page_closed(PageId page, std::size_t left) {
-  const std::lock_guard lock(mutex_);
-  received_.erase(page);
-  pages_ = left;
+  {
+    const std::lock_guard lock(mutex_);
+    received_.erase(page);
+    pages_ = left;
+  }
+  take_film_from(page);
 }
 
 void Studio::receive(PageId page, Command command, std::size_t bytes, std::uint64_t number) {
@@ -321,6 +327,10 @@ void Studio::receive(PageId page, Command command, std::size_t bytes, std::uint6
   }
   if (std::holds_alternative<CancelFilm>(command)) {
     cancel_film();
+    return skip(page, number);
+  }
+  if (std::holds_alternative<TakeFilm>(command)) {
+    forget_film(page);
     return skip(page, number);
   }
   const bool ends = ends_frame(command);
@@ -512,9 +522,8 @@ void Studio::send_notes(PageId page, const std::vector<std::string>& notes) {
   if (!notes.empty()) send_(page, text_message({{"type", "notes"}, {"notes", notes}}));
 }
 
-void Studio::send_file(PageId page, SavedFile file) {
-  const Json header{{"type", "file"}, {"name", file.name}, {"content_type", file.content_type}};
-  send_(page, binary_message(header, {file.bytes}));
+void Studio::send_file(PageId page, const SavedFile& file) {
+  send_(page, file_message(file));
 }
 
 void Studio::move_camera(const std::function<void(Camera&)>& move) {

@@ -93,7 +93,7 @@ class Studio {
   void render(double seconds);
   void send_failure(const std::string& why);
   void send_scene();
-  void send_file(PageId page, SavedFile file);
+  void send_file(PageId page, const SavedFile& file);
   void send_notes(PageId page, const std::vector<std::string>& notes);
   void move_camera(const std::function<void(Camera&)>& move);
   void fit_camera(const std::string& side);
@@ -111,9 +111,23 @@ class Studio {
 
   // studio_film.cpp:
   void edit_film(const EditFilm& edit);
-  /// Begins to save a film for a page. Throws Error if one is being saved.
+  /// Makes or renews a keyframe. Throws Error if another one than the chosen one is shown.
+  void set_keyframe(std::optional<std::size_t> chosen);
+  /// Begins to save a film for a page. All pages are told how far it is. Throws Error if one is
+  /// being saved.
   void save_film(PageId page, const SaveFilm& wanted);
   void cancel_film();
+  /// Tells pages of the end of a film, and gives one of them its file.
+  void end_film(SavedFile file, const std::string& failure);
+  /// Gives a file that is kept to the page that asked for it, or to another one if that one is
+  /// gone. Needs the mutex of films.
+  void give_film();
+  /// Tells a new page of the film that is being saved, or gives it the one that is kept.
+  void tell_of_film(PageId page);
+  /// Gives the file of a film to another page than one that went without having it.
+  void take_film_from(PageId page);
+  /// Forgets the file of a film, which a page has.
+  void forget_film(PageId page);
 
   SceneState state_;
   int threads_;
@@ -145,8 +159,12 @@ class Studio {
   std::unique_ptr<Fitting> fitting_;
   std::optional<GaussianFit::Outcome> fitted_;
   std::size_t fit_number_ = 0;
-  std::mutex film_mutex_;  ///< Mutex of film_job_
+  std::mutex film_mutex_;  ///< Mutex of the following; mutex_ may be taken within it
   std::unique_ptr<FilmJob> film_job_;
+  PageId film_page_ = 0;                  ///< Page that asked for the film
+  std::optional<PageMessage> film_told_;  ///< last progress; none: no film is being saved
+  std::optional<PageMessage> film_file_;  ///< kept until a page has it
+  std::optional<PageId> film_given_to_;   ///< Page that the file is on its way to
   std::thread thread_;
 };
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <string>
@@ -11,6 +15,7 @@
 #include <vector>
 
 #include "pellucid/cpu/render.h"
+#include "pellucid/io/film_files.h"
 #include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/io/internal/temporary_folder.h"
 #include "pellucid/scene/error.h"
@@ -525,6 +530,116 @@ TEST(ParseCommand, ReadsTheFilm) {
   refused(R"({"type": "save_film", "width": 9, "height": 9, "tolerance": 0.1, "format": "avi"})",
           "must be one of webm, mp4, zip");
   refused(R"({"type": "scene_time", "time": null})", "time is not a number");
+}
+
+/// A program of the name ffmpeg that encodes nothing, in front of PATH while this lives.
+class FakeFfmpeg {
+ public:
+  explicit FakeFfmpeg(const std::string& encoding) : paths_(std::getenv("PATH")) {
+    const fs::path program = folder_.path() / "ffmpeg";
+    write_text_file(program, "#!/bin/sh\ncase \"$*\" in *lavfi*) exit 0 ;; esac\n" + encoding);
+    fs::permissions(program, fs::perms::owner_all);
+    setenv("PATH", (folder_.path().string() + ":" + paths_).c_str(), 1);
+  }
+  ~FakeFfmpeg() { setenv("PATH", paths_.c_str(), 1); }
+  FakeFfmpeg(const FakeFfmpeg&) = delete;
+  FakeFfmpeg& operator=(const FakeFfmpeg&) = delete;
+
+  const fs::path& folder() const { return folder_.path(); }
+
+ private:
+  TemporaryFolder folder_{"a program of a test"};
+  std::string paths_;
+};
+
+/// How a film of two small frames ended.
+struct FilmEnd {
+  SavedFile file;
+  std::string failure;
+  double seconds = 0;
+  std::vector<int> frames;  ///< that were told
+};
+
+/// Saves it, and cancels it once `cancel_at` frames are done.
+FilmEnd saved_film(const SaveFilm& wanted, int cancel_at = 100,
+                   std::uintmax_t most_bytes = largest_film) {
+  SceneState state = shells();
+  state.set_film_length(1, 4);
+  state.set_keyframe();
+  FilmEnd end;
+  std::atomic<int> done = 0;
+  const auto start = std::chrono::steady_clock::now();
+  FilmJob job(
+      state, wanted, 1,
+      [&](const SavedFilmProgress& progress) {
+        end.frames.push_back(progress.frame);
+        done = progress.frame - 1;
+      },
+      [&](SavedFile file, const std::string& why) {
+        end.file = std::move(file);
+        end.failure = why;
+      },
+      most_bytes);
+  while (!job.has_ended()) {
+    if (done >= cancel_at) job.cancel();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  end.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return end;
+}
+
+TEST(FilmJob, EndsTheEncoderWhenItIsCancelled) {
+  const FakeFfmpeg silent("exec sleep 60\n");
+  const FilmEnd end = saved_film({16, 12, 1.0 / 512, "webm"}, 4);
+  expect_error(end.failure, "cancelled; no file is left");
+  EXPECT_LT(end.seconds, 30);
+  EXPECT_EQ(end.frames.back(), 5);
+}
+
+TEST(FilmJob, EndsAnEncoderThatClosedItsOutput) {
+  const FakeFfmpeg deaf("exec sleep 60 2>&-\n");
+  const FilmEnd end = saved_film({16, 12, 1.0 / 512, "mp4"}, 4);
+  expect_error(end.failure, "cancelled; no file is left");
+  EXPECT_LT(end.seconds, 30);
+}
+
+TEST(FilmJob, TellsOfAFailureBehindItsFirstProgress) {
+  const FakeFfmpeg failing("echo no such encoder >&2; exit 1\n");
+  const FilmEnd end = saved_film({16, 12, 1.0 / 512, "webm"});
+  expect_error(end.failure, "ffmpeg failed: no such encoder");
+  EXPECT_EQ(end.frames.front(), 1);
+}
+
+TEST(FilmJob, EndsAsSoonAsThePicturesAreTooMany) {
+  const FilmEnd end = saved_film({64, 48, 1.0 / 512, "zip"}, 100, 1000);
+  expect_error(end.failure, "more than 0 MB, the most that a page can be given");
+  EXPECT_TRUE(end.file.bytes.empty());
+  EXPECT_LT(end.frames.back(), 4);
+}
+
+TEST(FilmFiles, LeaveNoVideoThatWasEnded) {
+  const FakeFfmpeg slow("for last; do :; done; echo part > \"${last#file:}\"; exec sleep 60\n");
+  const fs::path path = slow.folder() / "film.webm";
+  const FilmFiles files(path);
+  Image image;
+  image.width = image.height = 2;
+  image.pixels.resize(4);
+  files.write(0, image, "a test", {});
+  int asked = 0;
+  EXPECT_FALSE(files.finish(1, 24, false, [&] { return ++asked > 10; }));
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(slow.folder())) {
+    names.push_back(entry.path().filename());
+  }
+  std::ranges::sort(names);
+  EXPECT_EQ(names, (std::vector<std::string>{"ffmpeg", "film.webm.frames"}));
+}
+
+TEST(ParseCommand, ReadsTheKeyframeThatIsChosen) {
+  const auto film = [](const char* text) { return std::get<EditFilm>(parse_command(text)); };
+  EXPECT_EQ(film(R"({"type": "film", "action": "set_keyframe", "keyframe": 2})").chosen, 2U);
+  EXPECT_FALSE(film(R"({"type": "film", "action": "set_keyframe"})").chosen);
+  EXPECT_TRUE(std::holds_alternative<TakeFilm>(parse_command(R"({"type": "film_taken"})")));
 }
 
 }  // namespace

@@ -74,6 +74,14 @@ std::string over_text(const std::string& frames) {
       frames);
 }
 
+/// Makes the file of a film whose frames are there. A signal ends it, and leaves no part of it.
+void finish(const FilmRun& run, const AnimateArguments& arguments) {
+  const InterruptGuard guard;
+  const bool is_made = run.files().finish(run.film().frames(), run.fps(), arguments.keeps_frames,
+                                          [] { return InterruptGuard::interrupted(); });
+  if (!is_made) InterruptGuard::check();
+}
+
 /// Renders a share of the frames on each rank of MPI, which see the same folder. The first makes
 /// the video, and speaks for all.
 int run_on_ranks(AnimateArguments arguments) {
@@ -101,7 +109,7 @@ int run_on_ranks(AnimateArguments arguments) {
     if (!text.empty()) all_over += (all_over.empty() ? "" : ", ") + text;
   }
   if (is_first) {
-    run->files().finish(run->film().frames(), run->fps(), arguments.keeps_frames);
+    finish(*run, arguments);
     run->tell(arguments.output);
     if (!all_over.empty()) throw OverTolerance(over_text(all_over));
   }
@@ -119,9 +127,7 @@ int run_animate(AnimateArguments arguments) {
   }
   FilmRun run(arguments, parse_film_share("--part", arguments.part));
   run();
-  if (arguments.part.empty()) {
-    run.files().finish(run.film().frames(), run.fps(), arguments.keeps_frames);
-  }
+  if (arguments.part.empty()) finish(run, arguments);
   run.tell(arguments.output);
   if (!run.over().empty()) {
     throw OverTolerance(over_text(fmt::format("{}", fmt::join(run.over(), ", "))));

@@ -25,9 +25,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A page is given a file in one message, which must fit into what may wait for it (ServerLimits).
-constexpr std::uintmax_t most_bytes = std::uintmax_t{200} << 20;
-
 /// Returns whether a program is in one of the folders of PATH.
 bool has_program(const std::string& name) {
   const char* const path = std::getenv("PATH");
@@ -50,29 +47,49 @@ struct Work {
   SaveFilm wanted;
   double fps = 0;
   int threads = 0;
+  std::uintmax_t most_bytes = 0;
 };
 
 std::string content_type_of(const std::string& format) {
   return format == "zip" ? "application/zip" : "video/" + format;
 }
 
-/// Renders and encodes the film into the folder, and returns the path of its file.
+void check_size(std::uintmax_t bytes, std::uintmax_t most) {
+  if (bytes <= most) return;
+  throw Error(
+      fmt::format("the film has more than {} MB, the most that a page can be given; make it "
+                  "smaller or shorter, "
+                  "or save the scene and call pellucid animate scene.json -o film.webm",
+                  most >> 20));
+}
+
+/// Renders and encodes the film into the folder, and returns the path of its file. `progress`
+/// returns false where it is cancelled.
 fs::path make_file(const Work& work, const fs::path& folder,
-                   const std::function<bool(const FilmProgress&)>& progress) {
+                   const std::function<bool(const FilmProgress&)>& progress,
+                   const std::function<bool()>& cancelled) {
   const bool is_zip = work.wanted.format == "zip";
   const fs::path frames = folder / "film";
   const FilmFiles files(is_zip ? frames / "%04d.png" : folder / ("film." + work.wanted.format));
   RenderOptions options;
   options.machine.threads = work.threads;
+  std::uintmax_t bytes = 0;
+  const auto count_bytes = [&](int frame) {
+    if (is_zip) bytes += fs::file_size(files.picture(frame));
+    check_size(bytes, work.most_bytes);
+  };
   FilmFrames film_frames(
       *work.film, files, *work.loader, parallel_for(work.threads), options,
       {[](int) { return true; }, work.film->frames(),
        [](const SceneDescription& description) { return scene_to_json(description); }, progress,
-       [](const FilmFrame&, RenderResult&) {}});
+       [&](const FilmFrame& frame, RenderResult&) {
+         if (frame.number > 0) count_bytes(frame.number - 1);
+       }});
   film_frames.render();
   const int count = work.film->frames();
   if (!progress({count + 1, count, 0, 0})) throw Cancelled();
-  files.finish(count, work.fps, false);
+  count_bytes(count - 1);
+  if (!files.finish(count, work.fps, false, cancelled)) throw Cancelled();
   if (!is_zip) return folder / ("film." + work.wanted.format);
   std::vector<fs::path> pictures;
   for (int frame = 0; frame < count; ++frame) pictures.push_back(files.picture(frame));
@@ -80,17 +97,11 @@ fs::path make_file(const Work& work, const fs::path& folder,
   return folder / "film.zip";
 }
 
-SavedFile read_file(const fs::path& path, const std::string& format) {
-  const std::uintmax_t size = fs::file_size(path);
-  if (size > most_bytes) {
-    throw Error(fmt::format(
-        "the film has {} MB, more than a page can be given; save the scene, and call pellucid "
-        "animate scene.json -o film.webm",
-        size >> 20));
-  }
+SavedFile read_file(const fs::path& path, const Work& work) {
+  check_size(fs::file_size(path), work.most_bytes);
   std::ifstream file(path, std::ios::binary);
   return {path.filename().string(),
-          content_type_of(format),
+          content_type_of(work.wanted.format),
           {std::istreambuf_iterator<char>(file), {}}};
 }
 
@@ -115,7 +126,7 @@ std::vector<std::string> savable_film_formats() {
 }
 
 FilmJob::FilmJob(const SceneState& state, SaveFilm wanted, int threads, Progress progress,
-                 Done done) {
+                 Done done, std::uintmax_t most_bytes) {
   SceneState sized = state;
   sized.set_size({wanted.width, wanted.height});
   sized.set_tolerance(wanted.tolerance);
@@ -126,18 +137,22 @@ FilmJob::FilmJob(const SceneState& state, SaveFilm wanted, int threads, Progress
   work->wanted = std::move(wanted);
   work->fps = animation.fps;
   work->threads = threads;
+  work->most_bytes = most_bytes;
   thread_ = std::thread([this, work, progress = std::move(progress), done = std::move(done)] {
     SavedFile file;
     std::string failure;
     try {
+      progress({1, work->film->frames(), 0, -1});
       const TemporaryFolder folder("a film");
       try {
-        const fs::path path = make_file(*work, folder.path(), [&](const FilmProgress& now) {
+        const auto cancelled = [this] { return cancelled_.load(); };
+        const auto tell = [&](const FilmProgress& now) {
           progress({now.frame, now.frames, now.share_done, now.seconds_left.value_or(-1)});
           return !cancelled_;
-        });
-        if (cancelled_) throw Cancelled();  // while it was encoded
-        file = read_file(path, work->wanted.format);
+        };
+        const fs::path path = make_file(*work, folder.path(), tell, cancelled);
+        if (cancelled_) throw Cancelled();  // while it was packed
+        file = read_file(path, *work);
       } catch (const Error& error) {
         failure = without_folder(error.what(), folder.path());
       }

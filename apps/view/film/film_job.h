@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <thread>
@@ -20,6 +21,9 @@ struct SavedFilmProgress {
   double seconds_left = -1;   ///< negative: not known yet
 };
 
+/// A page is given a file in one message, which must fit into what may wait for it (ServerLimits).
+inline constexpr std::uintmax_t largest_film = std::uintmax_t{200} << 20;
+
 /// Returns the formats that films can be saved in here: without the program ffmpeg no videos, and
 /// none in a page without a program.
 std::vector<std::string> savable_film_formats();
@@ -32,9 +36,12 @@ class FilmJob {
   /// Gets the file, or in its place why there is none: a sentence.
   using Done = std::function<void(SavedFile, const std::string& failure)>;
 
-  /// Throws Error for a film that cannot be made. Both functions are called by its thread.
-  FilmJob(const SceneState& state, SaveFilm wanted, int threads, Progress progress, Done done);
-  /// Cancels it, and waits for its end.
+  /// Throws Error for a film that cannot be made. Both functions are called by its thread, the
+  /// first one at once. A file of more than `most_bytes` is none; of pictures it ends as soon as
+  /// they are more.
+  FilmJob(const SceneState& state, SaveFilm wanted, int threads, Progress progress, Done done,
+          std::uintmax_t most_bytes = largest_film);
+  /// Cancels it, and waits for its end, which FFmpeg does not hold up.
   ~FilmJob();
   FilmJob(const FilmJob&) = delete;
   FilmJob& operator=(const FilmJob&) = delete;

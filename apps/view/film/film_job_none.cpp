@@ -8,7 +8,7 @@ std::vector<std::string> savable_film_formats() {
   return {};
 }
 
-FilmJob::FilmJob(const SceneState&, SaveFilm, int, Progress, Done) {
+FilmJob::FilmJob(const SceneState&, SaveFilm, int, Progress, Done, std::uintmax_t) {
   throw Error(
       "a page without a program saves no film; save the scene, and call pellucid animate "
       "scene.json -o film.webm");

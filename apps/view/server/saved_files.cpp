@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "page_messages.h"
 #include "pellucid/io/export_transfer_function.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/import_transfer_function.h"
@@ -27,6 +28,11 @@ std::string bytes_of(const std::string& name, const Write& write) {
 }
 
 }  // namespace
+
+PageMessage file_message(const SavedFile& file) {
+  const Json header{{"type", "file"}, {"name", file.name}, {"content_type", file.content_type}};
+  return binary_message(header, {file.bytes});
+}
 
 std::vector<ColorBar> wanted_color_bars(const SceneDescription& description, const Scene& scene) {
   check_draws_color_bars();

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "page_server.h"
 #include "pellucid/io/color_bar.h"
 #include "pellucid/io/scene_json.h"
 #include "pellucid/scene/image.h"
@@ -15,6 +16,9 @@ namespace pellucid::view {
 struct SavedFile {
   std::string name, content_type, bytes;
 };
+
+/// Returns the message that gives a page a file.
+PageMessage file_message(const SavedFile& file);
 
 /// Returns the color bars of a scene. Throws Error if there are none, or they cannot be drawn.
 std::vector<ColorBar> wanted_color_bars(const SceneDescription& description, const Scene& scene);

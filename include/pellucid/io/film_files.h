@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -35,8 +36,10 @@ class FilmFiles {
   void write(int frame, const Image& image, const std::string& made_from,
              const std::optional<Background>& background) const;
   /// Makes the video of so many pictures, and removes them unless `keeps_pictures`. Does nothing if
-  /// no video is wanted. Throws Error with what FFmpeg says.
-  void finish(int frames, double fps, bool keeps_pictures) const;
+  /// no video is wanted. Throws Error with what FFmpeg says. `ended` is asked some twenty times a
+  /// second: where it returns true FFmpeg is ended, no video is left, and false is returned.
+  bool finish(int frames, double fps, bool keeps_pictures,
+              const std::function<bool()>& ended = {}) const;
 
  private:
   std::filesystem::path path_, folder_;  ///< folder of a video's pictures; empty: none is wanted

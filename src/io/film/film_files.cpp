@@ -98,13 +98,15 @@ void FilmFiles::write(int frame, const Image& image, const std::string& made_fro
   }
 }
 
-void FilmFiles::finish(int frames, double fps, bool keeps_pictures) const {
-  if (!is_video()) return;
-  make_video(folder_, digits_, frames, fps, path_);
-  if (keeps_pictures) return;
+bool FilmFiles::finish(int frames, double fps, bool keeps_pictures,
+                       const std::function<bool()>& ended) const {
+  if (!is_video()) return true;
+  if (!make_video(folder_, digits_, frames, fps, path_, ended)) return false;
+  if (keeps_pictures) return true;
   std::error_code ignored;  // pictures that stay do no harm
   for (int frame = 0; frame < frames; ++frame) std::filesystem::remove(picture(frame), ignored);
   std::filesystem::remove(folder_, ignored);
+  return true;
 }
 
 std::string data_stamp(const SceneDescription& description) {

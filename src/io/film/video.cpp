@@ -2,13 +2,17 @@
 #include "video.h"
 
 #include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "pellucid/io/internal/atomic_file.h"
@@ -20,14 +24,49 @@ extern char** environ;
 namespace pellucid {
 namespace {
 
+/// Time between two questions whether a process is to end.
+constexpr std::chrono::milliseconds asked_every{50};
+
 /// End of a process: its status, -1 if it could not be started, and what it wrote to stderr.
 struct Outcome {
   int status = -1;
   std::string said;
+  bool was_ended = false;  ///< True where it was killed, as its caller wanted
 };
 
-/// Runs ffmpeg in a folder and waits for it.
-Outcome run_ffmpeg(std::vector<std::string> arguments, const std::filesystem::path& folder) {
+/// Collects what a process says, until it closes the pipe. Returns false where it is to end.
+bool listen(int pipe_end, const std::function<bool()>& ended, std::string& said) {
+  std::array<char, 1024> part{};
+  constexpr std::size_t most = 4096;
+  while (true) {
+    if (ended && ended()) return false;
+    pollfd waited{pipe_end, POLLIN, 0};
+    const int ready = poll(&waited, 1, ended ? static_cast<int>(asked_every.count()) : -1);
+    if (ready == 0 || (ready < 0 && errno == EINTR)) continue;
+    if (ready < 0) return true;
+    const ssize_t count = read(pipe_end, part.data(), part.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return true;
+    if (said.size() < most) said.append(part.data(), static_cast<std::size_t>(count));
+  }
+}
+
+/// Waits for a process that closed its pipe, and returns its status. Kills it where it is to end.
+int wait_for(pid_t process, bool& was_ended, const std::function<bool()>& ended) {
+  int status = 0;
+  while (true) {
+    if (!was_ended && ended && ended()) was_ended = true;
+    if (was_ended) kill(process, SIGKILL);
+    const bool asks = ended && !was_ended;
+    const pid_t found = waitpid(process, &status, asks ? WNOHANG : 0);
+    if (found == process || (found < 0 && errno != EINTR)) return status;
+    if (found == 0) std::this_thread::sleep_for(asked_every);
+  }
+}
+
+/// Runs ffmpeg in a folder and waits for it, or until `ended`.
+Outcome run_ffmpeg(std::vector<std::string> arguments, const std::filesystem::path& folder,
+                   const std::function<bool()>& ended = {}) {
   arguments.insert(arguments.begin(), {"ffmpeg", "-nostdin", "-hide_banner", "-v", "error"});
   std::vector<char*> words;
   for (std::string& argument : arguments) words.push_back(argument.data());
@@ -47,21 +86,10 @@ Outcome run_ffmpeg(std::vector<std::string> arguments, const std::filesystem::pa
   close(pipe_ends[1]);
 
   Outcome outcome;
-  std::array<char, 1024> part{};
-  constexpr std::size_t most = 4096;
-  while (failure == 0) {
-    const ssize_t count = read(pipe_ends[0], part.data(), part.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) break;
-    if (outcome.said.size() < most) {
-      outcome.said.append(part.data(), static_cast<std::size_t>(count));
-    }
-  }
+  if (failure == 0) outcome.was_ended = !listen(pipe_ends[0], ended, outcome.said);
   close(pipe_ends[0]);
   if (failure != 0) return outcome;
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
+  const int status = wait_for(process, outcome.was_ended, ended);
   outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 1;
   return outcome;
 }
@@ -104,8 +132,8 @@ void check_video(const std::filesystem::path& path) {
   }
 }
 
-void make_video(const std::filesystem::path& folder, int digits, int frames, double fps,
-                const std::filesystem::path& path) {
+bool make_video(const std::filesystem::path& folder, int digits, int frames, double fps,
+                const std::filesystem::path& path, const std::function<bool()>& ended) {
   AtomicFile file(path);
   const std::string rate = std::to_string(fps);
   // The signals of the pictures are sRGB in full range; players assume BT.709 in limited range.
@@ -142,12 +170,15 @@ void make_video(const std::filesystem::path& folder, int digits, int frames, dou
   arguments.insert(arguments.end(), encoding.begin(), encoding.end());
   // With the protocol's name a colon in a path is no protocol.
   arguments.push_back("file:" + std::filesystem::absolute(file.temporary_path()).string());
-  const Outcome outcome = run_ffmpeg(std::move(arguments), folder);
+  const Outcome outcome = run_ffmpeg(std::move(arguments), folder, ended);
+  // Ctrl-C ends it, too.
+  if (outcome.was_ended || (outcome.status != 0 && ended && ended())) return false;
   if (outcome.status != 0) {
     throw Error(path.string() + ": ffmpeg failed: " + first_line(outcome) +
                 "; the pictures are in " + folder.string());
   }
   file.commit();
+  return true;
 }
 
 }  // namespace pellucid

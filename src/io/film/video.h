@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 namespace pellucid {
@@ -14,8 +15,9 @@ void check_video(const std::filesystem::path& path);
 
 /// Makes a video of pictures "000000.png" … in a folder, by FFmpeg, which is a process of its own.
 /// A row or column is added where a size is odd. Equal pictures make an equal file. Throws Error
-/// with the first line of what it says.
-void make_video(const std::filesystem::path& folder, int digits, int frames, double fps,
-                const std::filesystem::path& path);
+/// with the first line of what it says. `ended` is asked some twenty times a second, if there is
+/// one: where it returns true the process is killed, no file is left, and false is returned.
+bool make_video(const std::filesystem::path& folder, int digits, int frames, double fps,
+                const std::filesystem::path& path, const std::function<bool()>& ended);
 
 }  // namespace pellucid
