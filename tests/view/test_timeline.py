@@ -5,6 +5,7 @@ import io
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -138,6 +139,81 @@ class Keyframes(TimelineTest):
         page.press_button("Remove film")
         page.wait_for(lambda: not self.timeline(page)["has_film"], "no film")
         self.assertNotIn("animation", self.scene(page))
+        self.assertEqual(page.complaints(), [])
+
+    def test_keys_at_a_mark(self):
+        page = self.open("builtin:shells:16", window=(900, 640))
+        self.make_keyframes(page, False)
+
+        def focused():
+            return page.run("return document.activeElement.dataset.keyframe")
+
+        # A move onto the neighbour is refused, and all stays: the focus, the moment, and the marks.
+        self.move(page, "moment", 2)
+        page.press_button("Add keyframe")
+        self.wait_keyframes(page, [0, 0.25, 0.75])
+        page.run("document.querySelector('[data-keyframe=\"0\"]').focus();"
+                 "window.errors = 0; viewer.connection.on('error', () => ++window.errors)")
+        self.key(page, "ArrowRight", 39)
+        self.wait_keyframes(page, [0.125, 0.25, 0.75])
+        page.wait_for(lambda: self.timeline(page)["frame"] == 1, "the moment")
+        self.key(page, "ArrowRight", 39)
+        page.wait_for(lambda: page.run("return window.errors") == 1, "the refusal")
+        time.sleep(0.5)
+        self.assertEqual(focused(), "0")
+        self.assertEqual(self.timeline(page)["frame"], 1)
+        self.key(page, "ArrowLeft", 37)
+        self.wait_keyframes(page, [0, 0.25, 0.75])
+        self.assertEqual(focused(), "0")
+
+        # Quick presses all move the same one, also past another.
+        page.run("const mark = document.querySelector('[data-keyframe=\"1\"]'); mark.focus();"
+                 "for (let i = 0; i < 5; ++i) document.activeElement.dispatchEvent("
+                 "new KeyboardEvent('keydown', {key: 'ArrowRight', bubbles: true}))")
+        self.wait_keyframes(page, [0, 0.75, 0.875])
+        page.wait_for(lambda: focused() == "2", "the focus to follow")
+        page.wait_for(lambda: self.timeline(page)["frame"] == 7, "the moment to follow")
+        self.assertEqual(page.complaints(), [])
+
+    def test_choosing_by_a_mark(self):
+        page = self.open("builtin:shells:16", window=(900, 640))
+        self.make_keyframes(page, False)
+
+        def chosen():
+            return page.run("return [...document.querySelectorAll('.mark[aria-pressed=true]')]"
+                            ".map((one) => one.dataset.keyframe).join()")
+
+        # One at the very end, where no frame is, and one at the last frame stand at one place.
+        scene = self.scene(page)
+        scene["animation"]["cameras"][0]["at"] = 0.875
+        scene["animation"]["cameras"][1]["at"] = 1
+        scene["animation"]["cameras"].insert(0, {**scene["animation"]["cameras"][0], "at": 0})
+        with open(self.path("end.json"), "w", encoding="ascii") as file:
+            json.dump(scene, file)
+        page.browser.quit()
+        page = self.open("end.json", window=(900, 640))
+        self.wait_keyframes(page, [0, 0.875, 1])
+        page.click(*page.center("[data-keyframe='2']"))
+        page.wait_for(lambda: chosen() == "2", "the one that was clicked")
+        self.assertIn("Keyframe 3 of 3, at 1 s", page.text("#timeline"))
+        page.run("document.querySelector('[data-keyframe=\"1\"]').focus()")
+        self.key(page, "Enter", 13)
+        page.wait_for(lambda: chosen() == "1", "the other one")
+        page.run("document.querySelector('[data-keyframe=\"2\"]').focus()")
+        self.key(page, "Enter", 13)
+        page.wait_for(lambda: chosen() == "2", "the first one again")
+        page.press_button("Delete keyframe")
+        self.wait_keyframes(page, [0, 0.875])
+        page.press("#undo")
+        self.wait_keyframes(page, [0, 0.875, 1])
+
+        # A number that cannot be gives way to the one before, with a sentence.
+        for wrong in ("", "-5"):
+            self.number(page, "Length of the film in seconds", wrong)
+            self.assertIn("give a number from 0.001 to 86400", page.text("#timeline .hint"))
+            self.assertEqual(page.run("return document.querySelector("
+                                      "'[aria-label=\"Length of the film in seconds\"]').value"),
+                             "1")
         self.assertEqual(page.complaints(), [])
 
     def test_playing(self):
@@ -290,6 +366,149 @@ class Films(TimelineTest):
         page.wait_for(lambda: "cancelled; no file is left" in page.text("#film-saver"), "the end")
         self.assertEqual(self.files(), set())
         self.assertEqual(page.text("#message"), "the film was cancelled; no file is left of it")
+
+    def fake_ffmpeg(self, check, encode):
+        """A program of this name that does what it is told, in front of PATH."""
+        os.mkdir(self.path("bin"))
+        with open(self.path("bin/ffmpeg"), "w", encoding="ascii") as file:
+            file.write(f'#!/bin/sh\necho $$ > {self.path("pid")}\n'
+                       f'case "$*" in *lavfi*) {check} ;; esac\n{encode}\n')
+        os.chmod(self.path("bin/ffmpeg"), 0o755)
+        return {**os.environ, "PATH": self.path("bin") + ":" + os.environ["PATH"]}
+
+    def start_with(self, environment, *arguments):
+        before = dict(os.environ)
+        try:
+            os.environ.update(environment)
+            return self.start(*arguments)
+        finally:
+            os.environ.clear()
+            os.environ.update(before)
+
+    def encoder_runs(self):
+        with open(self.path("pid"), encoding="ascii") as file:
+            return os.path.exists("/proc/" + file.read().strip())
+
+    def begin(self, viewer, film_format, edge):
+        socket = viewer.open_socket()
+        self.addCleanup(socket.connection.close)
+        socket.send(type="size", width=40, height=30)
+        socket.receive_type("scene")
+        socket.send(type="save_film", width=edge, height=edge, tolerance=0.01, format=film_format)
+        return socket
+
+    def test_an_encoder_is_ended(self):
+        viewer = self.start_with(self.fake_ffmpeg("exit 0", "exec sleep 100"), "s.vti")
+        socket = self.begin(viewer, "webm", 16)
+
+        def encodes(message):
+            return message["type"] == "film_progress" and message["frame"] > message["frames"]
+        socket.receive_until(encodes)
+        began = time.monotonic()
+        socket.send(type="cancel_film")
+        self.assertIn("cancelled", socket.receive_type("film_ended")["failure"])
+        self.assertFalse(self.encoder_runs())
+        socket.send(type="save_film", width=16, height=16, tolerance=0.01, format="webm")
+        socket.receive_until(encodes)
+        # Another file does not wait for it, nor does Ctrl-C.
+        socket.send(type="open", input="builtin:shells:8")
+        socket.receive_type("opened")
+        socket.receive_type("scene")
+        socket.send(type="save_film", width=16, height=16, tolerance=0.05, format="webm")
+        socket.receive_type("film_progress")
+        viewer.stop()
+        self.assertLess(time.monotonic() - began, 60)
+        self.assertFalse(self.encoder_runs())
+
+    def test_ctrl_c_while_the_program_encodes(self):
+        environment = self.fake_ffmpeg(
+            "exit 0", "for last; do :; done\n"
+            f'echo part > "${{last#file:}}"; touch {self.path("encodes")}; exec sleep 100')
+        process = subprocess.Popen(
+            [PROGRAM, "animate", "builtin:shells:8", "-o", "film.webm", "--size", "16",
+             "--frames", "2", "-q"], cwd=self.folder, env=environment, stderr=subprocess.DEVNULL)
+        try:
+            deadline = time.monotonic() + 60
+            while not os.path.exists(self.path("encodes")):
+                self.assertLess(time.monotonic(), deadline)
+                time.sleep(0.05)
+            process.send_signal(signal.SIGINT)
+            self.assertNotEqual(process.wait(timeout=30), 0)
+        finally:
+            process.kill()
+        self.assertFalse(self.encoder_runs())
+        self.assertEqual({name for name in os.listdir(self.folder) if "film" in name},
+                         {"film.webm.frames"})
+
+    def test_the_file_goes_to_a_page_that_is_there(self):
+        viewer = self.start("s.vti")
+        first = self.begin(viewer, "zip", 900)
+        first.receive_type("film_progress")
+        first.connection.close()
+        with viewer.open_socket() as second:
+            second.receive_type("film_progress")
+            page = second.receive_type("film_ended")
+            self.assertEqual(page["failure"], "")
+            self.assertEqual(second.receive_type("file")["bytes"][:2], b"PK")
+        # That page went without saying that it has the file.
+        with viewer.open_socket() as third:
+            self.assertEqual(third.receive_type("file")["name"], "film.zip")
+            third.send(type="film_taken")
+            third.send(type="size", width=40, height=30)
+            third.exact_frame()
+        with viewer.open_socket() as fourth:
+            fourth.send(type="size", width=42, height=30)
+            seen = []
+            fourth.receive_until(lambda message: seen.append(message["type"]) or
+                                 message["type"] == "frame")
+            self.assertNotIn("file", seen)
+        # Nobody is there when it ends.
+        last = self.begin(viewer, "zip", 30)
+        last.receive_type("film_progress")
+        last.connection.close()
+        time.sleep(3)
+        with viewer.open_socket() as again:
+            self.assertEqual(again.receive_type("file")["name"], "film.zip")
+
+    def test_reloaded_and_lost(self):
+        viewer = self.start("s.vti")
+        page = self.show(viewer, window=(860, 600))
+        page.wait_exact(page.press("#film"))
+        page.press_button("Save the film…")
+        self.number(page, "Width of the film in pixels", "")
+        self.assertIn("give a number from 1 to 8192", page.text("#film-saver"))
+        self.save_film(page, 3000, 3000, "zip")
+        self.assertTrue(page.run("return [...document.querySelectorAll('button')].find((one) =>"
+                                 "one.textContent === 'Cancel the film').checkVisibility()"))
+        page.wait_for(lambda: "Frame 1 of 3" in page.text("#film-saver"), "the progress")
+        # The panel can be closed meanwhile.
+        page.press_button("Save the film…")
+        time.sleep(1)
+        self.assertTrue(page.run("return document.getElementById('film-saver').hidden"))
+
+        page.browser.refresh()
+        page.wait_for(lambda: "of 3" in page.text("#film-saver"), "the progress again")
+        page.press_button("Cancel the film")
+        page.wait_for(lambda: "cancelled; no file is left" in page.text("#film-saver"), "the end")
+        page.wait_for(lambda: not page.run("return document.querySelector('[aria-label=\""
+                                           "Begin to save the film\"]').disabled"), "the button")
+        self.save_film(page, 3000, 3000, "zip")
+        page.wait_for(lambda: "Frame 1 of 3" in page.text("#film-saver"), "the progress")
+        os.kill(viewer.program(), signal.SIGKILL)
+        page.wait_for(lambda: "connection was lost, and no film came" in page.text("#film-saver"),
+                      "what happened")
+        self.assertNotIn("is saved", page.text("#film-saver"))
+        self.assertEqual(self.files(), set())
+
+    def test_a_failure_at_once(self):
+        environment = self.fake_ffmpeg("echo no such encoder >&2; exit 1", "exit 1")
+        page = self.show(self.start_with(environment, "s.vti"), window=(860, 600))
+        page.wait_exact(page.press("#film"))
+        page.press_button("Save the film…")
+        self.save_film(page, 20, 20, "webm")
+        page.wait_for(lambda: "cannot encode it: no such encoder" in page.text("#film-saver"),
+                      "the reason")
+        self.assertIn("no such encoder", page.text("#message"))
 
     def test_without_ffmpeg(self):
         os.mkdir(self.path("bin"))

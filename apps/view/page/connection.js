@@ -3,7 +3,8 @@ import {isProgram, openSocket} from './end.js';
 
 /** Messages after which the picture stays as it is. */
 const asks = new Set(['probe', 'slice', 'locate', 'save', 'histogram', 'thumbnail', 'export', 'list_file',
-  'list_folder', 'open', 'open_upload', 'suggest', 'cancel', 'film', 'save_film', 'cancel_film']);
+  'list_folder', 'open', 'open_upload', 'suggest', 'cancel', 'film', 'save_film', 'cancel_film',
+  'film_taken']);
 /** Seconds until the next try to reach a program that was lost. */
 const longestPause = 15;
 

@@ -50,12 +50,20 @@ export function labelledAfter(input, text) {
   return make('label', {class: 'inline'}, input, text);
 }
 
-/** A number to edit; `change` is called when it is complete. */
-export function numberInput(value, name, change, properties = {}) {
+/**
+ * A number to edit; `change` is called when it is complete. Where it is none, or not within the
+ * limits, the number before it stays, and `refused` is told in a sentence, if it is given.
+ */
+export function numberInput(value, name, change, properties = {}, refused = null) {
+  const {min = -Infinity, max = Infinity} = properties;
   return make('input', {type: 'number', step: 'any', value: shortNumber(value), 'aria-label': name,
     onchange: (event) => {
       const number = Number(event.target.value);
-      if (event.target.value !== '' && Number.isFinite(number)) change(number);
+      const isNumber = event.target.value !== '' && Number.isFinite(number);
+      if (isNumber && (!refused || (number >= min && number <= max))) return change(number);
+      if (!refused) return;
+      event.target.value = shortNumber(value);
+      refused(`${name}: give a number from ${min} to ${max}.`);
     }, ...properties});
 }
 

@@ -6,6 +6,8 @@ import {Player} from './player.js';
 
 /** Steps of time in a second at most. */
 const stepRate = 12;
+/** Limits of the length of a film and of its frames in a second. */
+const limits = {seconds: {min: 0.001, max: 86400}, fps: {min: 0.001, max: 1000}};
 /** Half of the thumb of a slider, in CSS pixels. */
 const inset = 8;
 
@@ -27,12 +29,20 @@ export class Timeline {
     this.isOpen = false;
     /** The slider that is being moved. */
     this.held = null;
+    /** The keyframe that was chosen by its mark, and its moment: {keyframe, at}. */
+    this.picked = null;
+    /** The change of a keyframe that the program has not answered: {keyframe, at, wanted, by}. */
+    this.asked = null;
+    /** What is wrong with a number that was given. */
+    this.complaint = '';
     this.makeSteps(connection);
     this.makeFilm(connection);
     this.element.append(this.stepsRow, this.film);
     // Messages stand above it.
     new ResizeObserver(() => this.element.parentElement.style
       .setProperty('--timeline', `${this.element.offsetHeight}px`)).observe(this.element);
+    connection.on('error', () => this.giveUp());
+    connection.on('lost', () => this.giveUp());
     this.button.addEventListener('click', () => this.open(!this.isOpen));
     addEventListener('keydown', (event) => {
       if (event.target.closest('input, select, textarea') || !viewer.scene) return;
@@ -125,11 +135,13 @@ export class Timeline {
   }
 
   edit(action, more = {}) {
+    this.complaint = '';
     this.viewer.clearMessage();
     this.viewer.connection.send({type: 'film', action, ...more});
   }
 
   showFrame(frame) {
+    this.complaint = '';
     this.frameSlider.value = frame;
     this.tellFrame(frame);
     this.viewer.connection.sendSoon('moment', {type: 'film_frame', frame});
@@ -152,8 +164,28 @@ export class Timeline {
     return `calc(${inset}px + ${share} * (100% - ${2 * inset}px))`;
   }
 
+  /** The keyframe that is updated and deleted: that of the mark that was chosen, if it is shown. */
+  chosen() {
+    const {keyframes, keyframe, frame} = this.now;
+    const isShown = (i) => keyframes[i] !== undefined && this.frameOf(keyframes[i]) === frame;
+    const {picked} = this;
+    if (picked && isShown(picked.keyframe) && keyframes[picked.keyframe].at === picked.at) {
+      return picked.keyframe;
+    }
+    // One at the very end of the film has no frame of its own, but stands at the last one.
+    return keyframe ?? [keyframes.findIndex((_, i) => isShown(i))].find((i) => i >= 0) ?? null;
+  }
+
+  /** Chooses a keyframe by its mark, and goes to it. */
+  pick(i) {
+    const {at} = this.now.keyframes[i];
+    this.picked = {keyframe: i, at};
+    this.showFrame(this.frameOf({at}));
+    this.update();
+  }
+
   mark(keyframe, i) {
-    const isChosen = this.now.keyframe === i;
+    const isChosen = this.chosen() === i;
     const parts = [...(keyframe.camera ? ['camera'] : []), ...keyframe.parts.map(partName)];
     const mark = button('◆', () => {}, {class: 'mark', 'data-keyframe': i,
       'aria-pressed': String(isChosen),
@@ -161,7 +193,8 @@ export class Timeline {
         'Enter goes there, arrow keys move it, Delete deletes it.',
       title: `${shortNumber(keyframe.at)} s: ${parts.join(', ')}`,
       onpointerdown: (event) => this.pressMark(event, keyframe, i),
-      onkeydown: (event) => this.pressKey(event, keyframe, i)});
+      onfocus: () => { this.focused = {keyframe: i, at: keyframe.at}; },
+      onkeydown: (event) => this.pressKey(event, i)});
     mark.style.left = this.place(this.frameOf(keyframe));
     return mark;
   }
@@ -184,28 +217,83 @@ export class Timeline {
       this.tellFrame(frame);
     }, (end) => {
       this.dragging = false;
-      if (end.type === 'pointercancel') return this.update();
-      if (hasMoved) this.moveTo(i, frame);
-      else this.showFrame(frame);
+      // Others may have changed the film meanwhile.
+      const now = this.indexOf(keyframe, i);
+      if (end.type !== 'pointercancel' && now !== null) {
+        if (hasMoved) this.moveTo(now, frame);
+        else this.pick(now);
+      }
+      // A mark that stays goes back to its place.
+      if (!this.asked) this.shownMarks = null;
       this.update();
     });
   }
 
-  moveTo(i, frame) {
-    this.edit('move_keyframe', {keyframe: i, frame});
-    this.focused = frame;
-    this.showFrame(frame);
+  /** The number that a keyframe has now; null: it is gone. @param {number} i that it had */
+  indexOf({at}, i) {
+    const {keyframes} = this.now;
+    if (keyframes[i]?.at === at) return i;
+    const found = keyframes.findIndex((one) => one.at === at);
+    return found < 0 ? null : found;
   }
 
-  pressKey(event, keyframe, i) {
-    const frame = this.frameOf(keyframe);
+  /** Asks for a keyframe at another frame. The moment follows when the program has moved it. */
+  moveTo(i, frame) {
+    if (this.asked) return;
+    const {keyframes, fps, seconds} = this.now;
+    const {at} = keyframes[i];
+    if (frame === this.frameOf({at})) return;
+    this.asked = {keyframe: i, at, wanted: Math.min(frame / fps, seconds), by: 0};
+    this.edit('move_keyframe', {keyframe: i, frame});
+  }
+
+  remove(i) {
+    if (this.asked) return;
+    this.asked = {keyframe: i, at: this.now.keyframes[i].at, wanted: null, by: 0};
+    this.edit('delete_keyframe', {keyframe: i});
+  }
+
+  /** The program refused what was asked: all stays as it is. */
+  giveUp() {
+    if (!this.asked) return;
+    this.asked = null;
+    this.shownMarks = null;
+    this.update();
+  }
+
+  /** Takes the answer to what was asked, if it has come; goes on with what was pressed since. */
+  takeAnswer() {
+    const {asked} = this;
+    if (!asked) return;
+    const {keyframes, frames} = this.now;
+    const isAt = (moment) => keyframes.findIndex(({at}) => Math.abs(at - moment) < 1e-9);
+    if (asked.wanted === null) {
+      if (keyframes[asked.keyframe]?.at !== asked.at) this.asked = null;
+      return;
+    }
+    const i = isAt(asked.wanted);
+    if (i < 0 || isAt(asked.at) >= 0) return;
+    this.asked = null;
+    const {at} = keyframes[i];
+    const frame = this.frameOf({at});
+    if (this.focused?.at === asked.at) this.focused = {keyframe: i, at};
+    this.picked = {keyframe: i, at};
+    const next = Math.min(Math.max(frame + asked.by, 0), frames - 1);
+    if (next === frame) this.showFrame(frame);
+    else this.moveTo(i, next);
+  }
+
+  pressKey(event, i) {
     const by = (event.shiftKey ? 10 : 1) * ({ArrowLeft: -1, ArrowRight: 1}[event.key] ?? 0);
     if (by !== 0) {
-      this.moveTo(i, Math.min(Math.max(frame + by, 0), this.now.frames - 1));
+      // The next move counts from where the mark is then.
+      if (this.asked?.keyframe === i) this.asked.by += by;
+      const frame = this.frameOf(this.now.keyframes[i]) + by;
+      this.moveTo(i, Math.min(Math.max(frame, 0), this.now.frames - 1));
     } else if (event.key === 'Delete' || event.key === 'Backspace') {
-      this.edit('delete_keyframe', {keyframe: i});
+      this.remove(i);
     } else if (event.key === 'Enter' || event.key === ' ') {
-      this.showFrame(frame);
+      this.pick(i);
     } else {
       return;
     }
@@ -254,7 +342,8 @@ export class Timeline {
     this.steps.stop();
     this.frames.stop();
     this.hadFilm = false;
-    this.held = null;
+    this.held = this.picked = this.asked = null;
+    this.complaint = '';
   }
 
   update() {
@@ -265,6 +354,7 @@ export class Timeline {
       return this.open(true);
     }
     this.hadFilm = now.has_film;
+    this.takeAnswer();
     this.element.hidden = now.times.length < 2 && !this.isOpen;
     this.stepsRow.hidden = now.times.length < 2;
     this.stepSlider.max = now.times.length - 1;
@@ -287,30 +377,33 @@ export class Timeline {
 
   updateMarks() {
     const {now} = this;
-    const key = JSON.stringify([now.keyframes, now.keyframe, now.fps, now.frames]);
+    const key = JSON.stringify([now.keyframes, this.chosen(), now.fps, now.frames]);
     if (key === this.shownMarks) return;
     this.shownMarks = key;
-    const had = this.marks.contains(document.activeElement);
+    // The focus stays at its keyframe; where that is gone, at the one in its place.
+    const had = this.marks.contains(document.activeElement) ? this.focused : null;
     this.marks.replaceChildren(...now.keyframes.map((keyframe, i) => this.mark(keyframe, i)));
     if (!had) return;
-    const frames = now.keyframes.map((keyframe) => this.frameOf(keyframe));
-    const next = Math.max(frames.indexOf(this.focused ?? now.frame), 0);
+    const next = this.indexOf(had, had.keyframe) ??
+      Math.min(had.keyframe, now.keyframes.length - 1);
     (this.marks.children[next] ?? this.frameSlider).focus();
   }
 
   updateControls() {
     const {now} = this;
-    const isThere = now.keyframe !== null;
-    const set = (key) => (value) =>
-      this.edit('length', {seconds: now.seconds, fps: now.fps, [key]: value});
+    const chosen = this.chosen();
+    const isThere = chosen !== null;
+    const number = (key, name) => numberInput(now[key], name, (value) =>
+      this.edit('length', {seconds: this.now.seconds, fps: this.now.fps, [key]: value}),
+    limits[key], (text) => {
+      this.complaint = text;
+      this.hint.textContent = text;
+    });
     replaceKeepingFocus(this.controls,
-      button(isThere ? 'Update keyframe' : 'Add keyframe', () => this.edit('set_keyframe')),
-      button('Delete keyframe', () => this.edit('delete_keyframe', {keyframe: now.keyframe}),
-        {disabled: !isThere}),
-      labelled('Seconds', numberInput(now.seconds, 'Length of the film in seconds',
-        set('seconds'), {min: 0.001, max: 86400})),
-      labelled('Frames a second', numberInput(now.fps, 'Frames of the film in a second',
-        set('fps'), {min: 0.001, max: 1000})),
+      button(isThere ? 'Update keyframe' : 'Add keyframe', () => this.setKeyframe()),
+      button('Delete keyframe', () => this.remove(this.chosen()), {disabled: !isThere}),
+      labelled('Seconds', number('seconds', 'Length of the film in seconds')),
+      labelled('Frames a second', number('fps', 'Frames of the film in a second')),
       button('Turntable', () => {
         this.edit('turntable', {turns: 1});
         this.showFrame(0);
@@ -322,8 +415,14 @@ export class Timeline {
     this.hint.textContent = this.hintText();
   }
 
+  setKeyframe() {
+    const chosen = this.chosen();
+    this.edit('set_keyframe', chosen === null ? {} : {keyframe: chosen});
+  }
+
   hintText() {
     const {now} = this;
+    if (this.complaint) return this.complaint;
     if (now.turns !== null) {
       return `The camera goes around ${now.turns === 1 ? 'once' : `${now.turns} times`}. A camera ` +
         'that you move is its new start.';
@@ -333,11 +432,12 @@ export class Timeline {
         : 'Choose a moment, turn or edit what you see, and add a keyframe. Without keyframes the ' +
           `film ${now.times.length > 1 ? 'shows each step of time' : 'goes around once'}.`;
     }
-    if (now.keyframe === null) {
+    const chosen = this.chosen();
+    if (chosen === null) {
       return 'Turn or edit what you see, and add a keyframe before you go to another moment.';
     }
-    const {at, camera, parts} = now.keyframes[now.keyframe];
-    return `Keyframe ${now.keyframe + 1} of ${now.keyframes.length}, at ${shortNumber(at)} s: ` +
+    const {at, camera, parts} = now.keyframes[chosen];
+    return `Keyframe ${chosen + 1} of ${now.keyframes.length}, at ${shortNumber(at)} s: ` +
       `${[...(camera ? ['camera'] : []), ...new Set(parts.map(partName))].join(', ')}. Arrow keys ` +
       'or a drag move its mark.';
   }
