@@ -33,7 +33,7 @@ export class FilmSaver {
     this.text = make('span', {role: 'status'});
     this.form = make('div', {class: 'row'});
     this.way = make('div', {class: 'row', hidden: true}, this.bar, this.text,
-      button('Cancel the film', () => viewer.connection.send({type: 'cancel_film'})));
+      button('Cancel the film', () => this.cancel()));
     this.said = make('p', {class: 'hint', role: 'status'});
     this.element = make('div', {id: 'film-saver', class: 'list', role: 'group',
       'aria-label': 'Save the film', hidden: true}, this.form, this.way, this.said);
@@ -104,12 +104,21 @@ export class FilmSaver {
   }
 
   save() {
+    const {connection} = this.viewer;
+    if (!connection.isOpen()) return this.end('No film can be saved before the program answers.');
+    this.isCancelled = false;
     this.begin('asked');
     this.bar.removeAttribute('value');
     this.text.textContent = 'The film begins…';
     const number = (key) => Number(this.numbers[key].last);
-    this.viewer.connection.send({type: 'save_film', width: number('width'),
+    connection.send({type: 'save_film', width: number('width'),
       height: number('height'), tolerance: number('tolerance'), format: this.format.value});
+  }
+
+  cancel() {
+    // A film that has not begun is cancelled when it does.
+    this.isCancelled = this.state === 'asked';
+    this.viewer.connection.send({type: 'cancel_film'});
   }
 
   begin(state) {
@@ -123,6 +132,7 @@ export class FilmSaver {
     // The film of another page, or one that went on while this page was away, is shown once.
     const isNews = this.state === 'none';
     if (this.state !== 'going') this.begin('going');
+    if (this.isCancelled) this.cancel();
     this.bar.value = Math.min((frame - 1 + share) / frames, 1);
     this.text.textContent = frame > frames ? 'Making the file…'
       : `Frame ${frame} of ${frames}${left >= 0 ? `, ${durationText(left)} left` : ''}`;

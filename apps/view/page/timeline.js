@@ -239,7 +239,7 @@ export class Timeline {
 
   /** Asks for a keyframe at another frame. The moment follows when the program has moved it. */
   moveTo(i, frame) {
-    if (this.asked) return;
+    if (this.asked || !this.viewer.connection.isOpen()) return;
     const {keyframes, fps, seconds} = this.now;
     const {at} = keyframes[i];
     if (frame === this.frameOf({at})) return;
@@ -248,7 +248,7 @@ export class Timeline {
   }
 
   remove(i) {
-    if (this.asked) return;
+    if (this.asked || !this.viewer.connection.isOpen()) return;
     this.asked = {keyframe: i, at: this.now.keyframes[i].at, wanted: null, by: 0};
     this.edit('delete_keyframe', {keyframe: i});
   }
