@@ -162,6 +162,7 @@ class Studio {
   std::mutex film_mutex_;  ///< Mutex of the following; mutex_ may be taken within it
   std::unique_ptr<FilmJob> film_job_;
   PageId film_page_ = 0;                  ///< Page that asked for the film
+  bool film_has_ended_ = false;           ///< True once pages were told of the end of film_job_
   std::optional<PageMessage> film_told_;  ///< last progress; none: no film is being saved
   std::optional<PageMessage> film_file_;  ///< kept until a page has it
   std::optional<PageId> film_given_to_;   ///< Page that the file is on its way to

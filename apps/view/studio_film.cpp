@@ -46,14 +46,15 @@ void Studio::set_keyframe(std::optional<std::size_t> chosen) {
 }
 
 void Studio::save_film(PageId page, const SaveFilm& wanted) {
-  if (film_job_ && !film_job_->has_ended()) {
-    throw Error("a film is being saved; wait for it, or cancel it");
-  }
   {
     const std::lock_guard lock(film_mutex_);
-    film_job_.reset();
+    if (film_job_ && !film_has_ended_) {
+      throw Error("a film is being saved; wait for it, or cancel it");
+    }
+    film_job_.reset();  // whose thread has nothing left to do
     film_file_.reset();
     film_page_ = page;
+    film_has_ended_ = false;
   }
   auto job = std::make_unique<FilmJob>(
       state_, wanted, threads_,
@@ -82,6 +83,7 @@ void Studio::cancel_film() {
 
 void Studio::end_film(SavedFile file, const std::string& failure) {
   const std::lock_guard lock(film_mutex_);
+  film_has_ended_ = true;
   film_told_.reset();
   if (!failure.empty()) {
     return send_({}, text_message({{"type", "film_ended"}, {"failure", failure}}));

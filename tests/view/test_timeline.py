@@ -196,6 +196,11 @@ class Keyframes(TimelineTest):
         page.click(*page.center("[data-keyframe='2']"))
         page.wait_for(lambda: chosen() == "2", "the one that was clicked")
         self.assertIn("Keyframe 3 of 3, at 1 s", page.text("#timeline"))
+        # The chosen one is in front; another click chooses the one behind it.
+        page.click(*page.center("[data-keyframe='2']"))
+        page.wait_for(lambda: chosen() == "1", "the one behind it")
+        page.click(*page.center("[data-keyframe='2']"))
+        page.wait_for(lambda: chosen() == "2", "the front one again")
         page.run("document.querySelector('[data-keyframe=\"1\"]').focus()")
         self.key(page, "Enter", 13)
         page.wait_for(lambda: chosen() == "1", "the other one")

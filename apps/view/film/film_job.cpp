@@ -160,6 +160,8 @@ FilmJob::FilmJob(const SceneState& state, SaveFilm wanted, int threads, Progress
       failure = "the film was cancelled; no file is left of it";
     } catch (const std::bad_alloc&) {
       failure = "there is not enough memory for this film";
+    } catch (const fs::filesystem_error& error) {
+      failure = "the film needs a folder for temporary files (TMPDIR): " + error.code().message();
     } catch (const std::exception& error) {
       failure = error.what();
     }

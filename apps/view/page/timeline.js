@@ -176,10 +176,18 @@ export class Timeline {
     return keyframe ?? [keyframes.findIndex((_, i) => isShown(i))].find((i) => i >= 0) ?? null;
   }
 
+  /** The next keyframe whose mark is at the same place, behind that of another; else that one. */
+  below(i) {
+    const {keyframes} = this.now;
+    const place = this.frameOf(keyframes[i]);
+    const same = [...keyframes.keys()].filter((one) => this.frameOf(keyframes[one]) === place);
+    return same[(same.indexOf(i) + same.length - 1) % same.length];
+  }
+
   /** Chooses a keyframe by its mark, and goes to it. */
   pick(i) {
     const {at} = this.now.keyframes[i];
-    this.picked = {keyframe: i, at};
+    this.picked = this.focused = {keyframe: i, at};
     this.showFrame(this.frameOf({at}));
     this.update();
   }
@@ -221,7 +229,7 @@ export class Timeline {
       const now = this.indexOf(keyframe, i);
       if (end.type !== 'pointercancel' && now !== null) {
         if (hasMoved) this.moveTo(now, frame);
-        else this.pick(now);
+        else this.pick(this.chosen() === now ? this.below(now) : now);
       }
       // A mark that stays goes back to its place.
       if (!this.asked) this.shownMarks = null;
