@@ -87,7 +87,8 @@ class SceneState {
   void show_frame(int frame);
   /// Makes what is shown the keyframe of the present moment (with_keyframe()), as a step of the
   /// history, which the changes below are, too. Throws Error, as they do.
-  void set_keyframe();
+  /// That of a number is renewed at its own moment, which need not be a frame's.
+  void set_keyframe(std::optional<std::size_t> keyframe = {});
   void move_keyframe(std::size_t keyframe, int frame);
   /// Deletes a keyframe, and with the last one the film.
   void delete_keyframe(std::size_t keyframe);

@@ -138,10 +138,14 @@ bool SceneState::has_chosen_time(const Animation& film) const {
   return shown && *shown != *description_.time;
 }
 
-void SceneState::set_keyframe() {
+void SceneState::set_keyframe(std::optional<std::size_t> keyframe) {
   Animation film = film_length();
   const std::vector<Keyframe> keyframes = keyframes_of(film);
-  const auto there = keyframe_at(keyframes, frame_, film.fps);
+  const auto there = keyframe ? keyframe : keyframe_at(keyframes, frame_, film.fps);
+  if (there && *there >= keyframes.size()) {
+    throw Error(
+        fmt::format("keyframe {}: there are {} keyframes only", *there + 1, keyframes.size()));
+  }
   const double at = there ? keyframes[*there].at : std::min(seconds(), film.seconds);
   if (has_chosen_time(film)) {
     if (film.by_steps) {

@@ -111,8 +111,6 @@ class Studio {
 
   // studio_film.cpp:
   void edit_film(const EditFilm& edit);
-  /// Makes or renews a keyframe. Throws Error if another one than the chosen one is shown.
-  void set_keyframe(std::optional<std::size_t> chosen);
   /// Begins to save a film for a page. All pages are told how far it is. Throws Error if one is
   /// being saved.
   void save_film(PageId page, const SaveFilm& wanted);

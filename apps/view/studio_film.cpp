@@ -20,7 +20,7 @@ void Studio::edit_film(const EditFilm& edit) {
   using Action = EditFilm::Action;
   switch (edit.action) {
     case Action::set_keyframe:
-      return set_keyframe(edit.chosen);
+      return state_.set_keyframe(edit.chosen);
     case Action::move_keyframe:
       return state_.move_keyframe(edit.keyframe, edit.frame);
     case Action::delete_keyframe:
@@ -32,17 +32,6 @@ void Studio::edit_film(const EditFilm& edit) {
     case Action::remove:
       return state_.remove_film();
   }
-}
-
-void Studio::set_keyframe(std::optional<std::size_t> chosen) {
-  const Animation& film = state_.film_length();
-  if (chosen && keyframe_at(keyframes_of(film), state_.frame(), film.fps) != chosen) {
-    throw Error(
-        "this frame does not show the keyframe that is chosen; move its mark to a frame of its "
-        "own, "
-        "and update it then");
-  }
-  state_.set_keyframe();
 }
 
 void Studio::save_film(PageId page, const SaveFilm& wanted) {

@@ -416,6 +416,27 @@ TEST(Film, TimesOfAFilmThatMovesEvenlyBecomeKeys) {
   expect_error(error_of([&] { even.set_keyframe(); }), "shows all steps evenly");
 }
 
+TEST(Film, AKeyframeThatNoFrameShowsIsRenewed) {
+  SceneState state = shells();
+  state.set_film_length(1, 8);
+  state.set_camera(from(4, 0, 1));
+  state.set_keyframe();
+  state.show_frame(7);
+  state.set_camera(from(0, 1, 4));
+  state.set_keyframe();
+  SceneDescription description = state.description();
+  description.animation->cameras[1].at = 1;  // the film's end, behind its last frame
+  SceneState end(description, state.scene(), {});
+  end.show_frame(7);
+  end.set_camera(from(0, 2, 5));
+  end.set_keyframe(1);
+  const Animation& film = *end.description().animation;
+  ASSERT_EQ(film.cameras.size(), 2U);
+  EXPECT_EQ(film.cameras[1].at, 1.0);
+  EXPECT_EQ(film.cameras[1].camera.position, (Vec3<double>{0, 2, 5}));
+  expect_error(error_of([&] { end.set_keyframe(2); }), "keyframe 3: there are 2 keyframes only");
+}
+
 TEST(Film, TracksOfTheCameraKeepMovingIt) {
   SceneState state = state_of(R"({"field": {"builtin": "shells", "points": 16}})",
                               R"(, "animation": {"seconds": 2, "fps": 4, "tracks": [
