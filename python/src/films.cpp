@@ -8,6 +8,7 @@
 #include "pellucid/io/film.h"
 #include "pellucid/io/film_files.h"
 #include "scenes.h"
+#include "waiting.h"
 
 namespace pellucid::python {
 
@@ -94,8 +95,22 @@ void bind_films(py::module_& module) {
             files.write(frame, *image.image, made_from, image.background);
           },
           py::arg("frame"), py::arg("image"), py::arg("made_from"))
-      .def("finish", &FilmFiles::finish, py::arg("frames"), py::arg("fps"),
-           py::arg("keeps_pictures"), py::call_guard<py::gil_scoped_release>());
+      .def(
+          "finish",
+          [](const FilmFiles& files, int frames, double fps, bool keeps_pictures) {
+            bool is_made = false;
+            {
+              // Ctrl-C ends FFmpeg.
+              const ReleasedLock released;
+              is_made = files.finish(frames, fps, keeps_pictures, [] {
+                wait_for_the_end_if_it_has_come();
+                const py::gil_scoped_acquire acquired;
+                return PyErr_CheckSignals() != 0;
+              });
+            }
+            if (!is_made && PyErr_Occurred() != nullptr) throw py::error_already_set();
+          },
+          py::arg("frames"), py::arg("fps"), py::arg("keeps_pictures"));
 }
 
 }  // namespace pellucid::python

@@ -2,7 +2,10 @@
 """Films: frames() and animate()."""
 import json
 import math
+import os
 import shutil
+import signal
+import time
 
 import numpy
 import pytest
@@ -115,6 +118,30 @@ def test_a_video(tmp_path):
     pellucid.animate(scene, tmp_path / "o.webm")
     assert (tmp_path / "o.webm").read_bytes()[:4] == b"\x1a\x45\xdf\xa3"
     assert sorted(each.name for each in tmp_path.iterdir()) == ["o.webm"]
+
+
+def test_an_interrupt_ends_ffmpeg(tmp_path, monkeypatch):
+    program = tmp_path / "ffmpeg"
+    program.write_text("#!/bin/sh\ncase \"$*\" in *lavfi*) exit 0 ;; esac\nexec sleep 60\n")
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+
+    def interrupt(signal_number, frame):
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    scene = scene_of(pellucid.builtin_field("shells", 8),
+                     animation={"seconds": 1, "fps": 2, "turntable": {}})
+    begin = time.monotonic()
+    try:
+        signal.alarm(3)
+        with pytest.raises(KeyboardInterrupt):
+            pellucid.animate(scene, tmp_path / "o.webm")
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+    assert time.monotonic() - begin < 30
+    assert not (tmp_path / "o.webm").exists()
 
 
 def test_what_is_no_film(tmp_path):
