@@ -37,7 +37,7 @@ T number_at(const HeaderBytes& bytes, std::size_t offset) {
   return std::bit_cast<T>(part);
 }
 
-const char* type_of(std::int32_t code, const std::string& name) {
+const char* mgh_type_of(std::int32_t code, const std::string& name) {
   switch (code) {
     case 0:
       return "u8";
@@ -131,7 +131,7 @@ VolumeFile open_mgh_bytes(const ByteSource& source, const ReadOptions& options) 
     throw Error(name + ": the MGH header says " + std::to_string(frames) +
                 " frames; it is damaged");
   }
-  const ValueLayout layout{type_of(number_at<std::int32_t>(bytes, 20), name),
+  const ValueLayout layout{mgh_type_of(number_at<std::int32_t>(bytes, 20), name),
                            true,
                            header_size,
                            frames,
