@@ -184,7 +184,7 @@ AskSlice read_slice(Members& members) {
   ask.plane.position = members.number("position", -farthest, farthest);
   ask.plane.from = read_position<2>(members, "from");
   ask.plane.to = read_position<2>(members, "to");
-  for (const std::size_t a : {0, 1}) {
+  for (const std::size_t a : {0U, 1U}) {
     if (ask.plane.from[a] == ask.plane.to[a]) members.fail("to", "has a number of from");
   }
   ask.plane.columns = members.integer("columns", 1, largest_slice_edge);

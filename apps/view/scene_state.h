@@ -90,12 +90,13 @@ class SceneState {
   /// That of a number is renewed at its own moment, which need not be a frame's.
   void set_keyframe(std::optional<std::size_t> keyframe = {});
   void move_keyframe(std::size_t keyframe, int frame);
-  /// Deletes a keyframe, and with the last one the film.
+  /// Deletes a keyframe, and with the last one the film but a length that was chosen.
   void delete_keyframe(std::size_t keyframe);
   /// Sets the length of the film. Keyframes stay at the same parts of it.
   void set_film_length(double seconds, double fps);
   /// Has the camera go around from where it is, in place of its keyframes.
   void set_turntable(double turns);
+  /// Removes the film and its length.
   void remove_film();
 
   bool can_undo() const noexcept { return !undone_by_.empty(); }

@@ -173,7 +173,12 @@ void SceneState::move_keyframe(std::size_t keyframe, int frame) {
 void SceneState::delete_keyframe(std::size_t keyframe) {
   Animation film = without_keyframe(film_length(), keyframe);
   if (has_motion(film)) return set_film(std::move(film));
-  remove_film();
+  new_film_ = Animation{};
+  if (length_is_set_) {
+    new_film_.seconds = film.seconds;
+    new_film_.fps = film.fps;
+  }
+  set_film(std::nullopt);
 }
 
 void SceneState::set_film_length(double seconds, double fps) {
@@ -202,10 +207,7 @@ void SceneState::set_turntable(double turns) {
 void SceneState::remove_film() {
   if (!description_.animation) return;
   new_film_ = Animation{};
-  if (length_is_set_) {
-    new_film_.seconds = description_.animation->seconds;
-    new_film_.fps = description_.animation->fps;
-  }
+  length_is_set_ = false;
   set_film(std::nullopt);
 }
 

@@ -460,6 +460,7 @@ TEST(Film, AChosenLengthIsSaved) {
   EXPECT_EQ(frame_count(saved), 20);
   EXPECT_EQ(animation_to_json(saved), animation_to_json(state.film_to_save()));
   SceneState turned = shells();
+  turned.set_film_length(1, 8);
   turned.set_turntable(1);
   turned.remove_film();
   EXPECT_EQ(turned.film_length().seconds, turned.film_to_save().seconds);
