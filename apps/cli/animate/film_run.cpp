@@ -118,7 +118,7 @@ void FilmRun::load() {
     animation_ = animation_of(arguments_, request.description, *times);
     written = request.description;
     if (!animation_.moves_data() || times->all().empty()) return;
-    const double first = animation_.time ? (*animation_.time)[0] : times->all().front();
+    const double first = first_time(animation_, *times);
     times->set(asked, first);
     times->set(request.description, first);
     for (const std::size_t i : choose_for_all_steps(asked, *times, parallel_)) {

@@ -39,10 +39,12 @@ class SceneTimes {
 /// Throws Error if none of them has steps.
 void resolve_time(SceneDescription& description);
 
-/// Has data that a film moves, which have no time yet, read at its first frame's.
 /// Gives the sources that have steps, and no time of their own, the time of the first one. Data
 /// whose times cannot be listed stay as they are.
 void set_first_step(SceneDescription& description);
+/// Returns the time of a film's first frame. `times`, of its scene, are not empty.
+double first_time(const Animation& film, const SceneTimes& times);
+/// Has data that a film moves, which have no time yet, read at its first frame's.
 void set_first_time(const Animation& film, SceneDescription& description);
 
 /// Returns the film of a scene that has no animation: one frame for each time if its data have

@@ -22,6 +22,19 @@ void visit_timed(LayerDescription& layer, const Visit& visit) {
   if (layer.mesh && layer.mesh->file != array_in_memory) visit(*layer.mesh, layer.mesh->options);
 }
 
+/// Calls visit(times, options) with the options of each source that has times.
+template <class Visit>
+void visit_steps(const std::vector<std::vector<std::vector<double>>>& times,
+                 SceneDescription& description, const Visit& visit) {
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    auto own = times[i].begin();
+    visit_timed(description.layers[i], [&](auto&, auto& options) {
+      if (!own->empty()) visit(*own, options);
+      ++own;
+    });
+  }
+}
+
 /// Returns whether one component of a file is chosen, which may be a step. Images have channels
 /// beside their times.
 bool has_component(const FieldSource& source) {
@@ -55,33 +68,25 @@ std::vector<double> SceneTimes::of(std::size_t layer) const {
 }
 
 void SceneTimes::set(SceneDescription& description, double moment) const {
-  for (std::size_t i = 0; i < times_.size(); ++i) {
-    auto times = times_[i].begin();
-    visit_timed(description.layers[i], [&](auto&, auto& options) {
-      if (!times->empty()) {
-        options.time = options.time_between == TimeBetween::linear
-                           ? std::clamp(moment, times->front(), times->back())
-                           : (*times)[nearest_step(*times, moment)];
-      }
-      ++times;
-    });
-  }
+  visit_steps(times_, description, [&](const std::vector<double>& times, auto& options) {
+    options.time = options.time_between == TimeBetween::linear
+                       ? std::clamp(moment, times.front(), times.back())
+                       : times[nearest_step(times, moment)];
+  });
 }
 
 void SceneTimes::clear(SceneDescription& description) const {
-  for (std::size_t i = 0; i < times_.size(); ++i) {
-    auto times = times_[i].begin();
-    visit_timed(description.layers[i], [&](auto&, auto& options) {
-      if (!times->empty()) options.time.reset();
-      ++times;
-    });
-  }
+  visit_steps(times_, description,
+              [](const std::vector<double>&, auto& options) { options.time.reset(); });
+}
+
+double first_time(const Animation& film, const SceneTimes& times) {
+  return film.time ? (*film.time)[0] : times.all().front();
 }
 
 void set_first_time(const Animation& film, SceneDescription& description) {
   const SceneTimes times(description);
-  if (times.all().empty()) return;
-  times.set(description, film.time ? (*film.time)[0] : times.all().front());
+  if (!times.all().empty()) times.set(description, first_time(film, times));
 }
 
 void set_first_step(SceneDescription& description) {
