@@ -79,15 +79,14 @@ class SceneState {
   Film make_film(const Animation& animation) const;
   /// Returns what loads its frames, from the scene that is shown.
   FrameLoader make_loader() const;
-  /// Returns the frame that the timeline stands at, and its moment in seconds.
+  /// Returns the frame that the timeline stands at.
   int frame() const noexcept { return frame_; }
-  double seconds() const noexcept;
   /// Becomes the scene of a frame, to the bit that of Film: no step of the history. What no key
   /// says stays as it is. Throws Error if there is no such frame.
   void show_frame(int frame);
-  /// Makes what is shown the keyframe of the present moment (with_keyframe()), as a step of the
-  /// history, which the changes below are, too. Throws Error, as they do.
-  /// That of a number is renewed at its own moment, which need not be a frame's.
+  /// Makes what is shown the keyframe of the present moment (with_keyframe()), or renews that of a
+  /// number at its own moment, which need not be a frame's: a step of the history, which the
+  /// changes below are, too. Throws Error, as they do.
   void set_keyframe(std::optional<std::size_t> keyframe = {});
   void move_keyframe(std::size_t keyframe, int frame);
   /// Deletes a keyframe, and with the last one the film but a length that was chosen.

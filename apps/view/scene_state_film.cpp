@@ -49,10 +49,6 @@ Animation SceneState::film_to_save() const {
   return film;
 }
 
-double SceneState::seconds() const noexcept {
-  return frame_ / film_length().fps;
-}
-
 SceneDescription SceneState::film_base() const {
   SceneDescription base = description_;
   base.animation.reset();
@@ -119,10 +115,8 @@ void SceneState::show_frame(int frame) {
   const std::optional<double> time = film_->time(frame);
   next.time = time ? time : description_.time;
   const bool goes_on = frame != frame_;
-  const bool moves_camera = animation.turntable || !animation.cameras.empty() ||
-                            std::ranges::any_of(animation.tracks, [](const AnimationTrack& track) {
-                              return track.target.starts_with("/camera");
-                            });
+  const bool moves_camera =
+      animation.turntable || !animation.cameras.empty() || has_camera_tracks(animation);
   if (!moves_camera) next.camera = description_.camera;
   const std::optional<Camera> still = turntable_camera_ ? turntable_camera_ : description_.camera;
   load(std::move(next));
@@ -140,25 +134,15 @@ bool SceneState::has_chosen_time(const Animation& film) const {
 
 void SceneState::set_keyframe(std::optional<std::size_t> keyframe) {
   Animation film = film_length();
-  const std::vector<Keyframe> keyframes = keyframes_of(film);
-  const auto there = keyframe ? keyframe : keyframe_at(keyframes, frame_, film.fps);
-  if (there && *there >= keyframes.size()) {
-    throw Error(
-        fmt::format("keyframe {}: there are {} keyframes only", *there + 1, keyframes.size()));
-  }
-  const double at = there ? keyframes[*there].at : std::min(seconds(), film.seconds);
+  const auto there = keyframe ? keyframe : keyframe_at(keyframes_of(film), frame_, film.fps);
+  const double at = there ? moment_of(film, *there) : std::min(frame_ / film.fps, film.seconds);
   if (has_chosen_time(film)) {
     if (film.by_steps) {
       throw Error(
           "time: the film shows all steps evenly, whatever time is chosen; remove the film to put "
           "times into keyframes");
     }
-    const auto [first, last] = *film.time;
-    const double end = (frame_count(film) - 1) / film.fps;
-    AnimationTrack track{time_target, Easing::linear, {{0, Json(first).dump()}}};
-    if (end > 0) track.keys.push_back({end, Json(last).dump()});
-    film.tracks.push_back(std::move(track));
-    film.time.reset();
+    film = with_time_track(std::move(film));
   }
   film = with_keyframe(std::move(film), at, with_time(), keyed_);
   set_film(std::move(film));

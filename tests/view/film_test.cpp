@@ -574,7 +574,7 @@ class FakeFfmpeg {
   std::string paths_;
 };
 
-/// How a film of two small frames ended.
+/// End of a film of two small frames.
 struct FilmEnd {
   SavedFile file;
   std::string failure;

@@ -61,13 +61,6 @@ Keyframe& keyframe_of(std::vector<Keyframe>& keyframes, double at) {
   return keyframes.emplace_back(Keyframe{at});
 }
 
-double checked_moment(const Animation& film, std::size_t keyframe) {
-  const std::vector<Keyframe> keyframes = keyframes_of(film);
-  if (keyframe < keyframes.size()) return keyframes[keyframe].at;
-  throw Error(
-      fmt::format("keyframe {}: there are {} keyframes only", keyframe + 1, keyframes.size()));
-}
-
 /// Puts a key at its place in time, in the place of one that is there then.
 template <class Key>
 void put_key(std::vector<Key>& keys, Key key) {
@@ -132,6 +125,13 @@ std::vector<Keyframe> keyframes_of(const Animation& film) {
   return keyframes;
 }
 
+double moment_of(const Animation& film, std::size_t keyframe) {
+  const std::vector<Keyframe> keyframes = keyframes_of(film);
+  if (keyframe < keyframes.size()) return keyframes[keyframe].at;
+  throw Error(
+      fmt::format("keyframe {}: there are {} keyframes only", keyframe + 1, keyframes.size()));
+}
+
 std::optional<std::size_t> keyframe_at(const std::vector<Keyframe>& keyframes, int frame,
                                        double fps) {
   std::optional<std::size_t> nearest;
@@ -157,11 +157,8 @@ Animation with_keyframe(Animation film, double at, const SceneDescription& scene
   }
   film.turntable.reset();
   give_cameras_times(film);
-  const bool has_camera_tracks =
-      film.cameras.empty() && std::ranges::any_of(film.tracks, [](const AnimationTrack& track) {
-        return overlap(track.target, camera_target);
-      });
-  if (!has_camera_tracks) put_key(film.cameras, CameraKey{*scene.camera, at});
+  if (!film.cameras.empty() || !has_camera_tracks(film))
+    put_key(film.cameras, CameraKey{*scene.camera, at});
   const Json document = document_of(scene);
   const Json parts = parts_of(document);
   for (AnimationTrack& track : film.tracks) {
@@ -187,7 +184,7 @@ Animation with_keyframe(Animation film, double at, const SceneDescription& scene
 }
 
 Animation with_keyframe_moved(Animation film, std::size_t keyframe, double at) {
-  const double from = checked_moment(film, keyframe);
+  const double from = moment_of(film, keyframe);
   if (!(at >= 0 && at <= film.seconds)) {
     throw Error(fmt::format("keyframe: {} s is not in the film, which has {} s", at, film.seconds));
   }
@@ -216,7 +213,7 @@ Animation with_keyframe_moved(Animation film, std::size_t keyframe, double at) {
 }
 
 Animation without_keyframe(Animation film, std::size_t keyframe) {
-  const double at = checked_moment(film, keyframe);
+  const double at = moment_of(film, keyframe);
   give_cameras_times(film);
   const auto is_then = [&](const auto& key) { return is_same(key.at, at); };
   std::erase_if(film.cameras, is_then);
@@ -236,6 +233,22 @@ Animation with_length(Animation film, double seconds, double fps) {
   film.seconds = seconds;
   film.fps = fps;
   return film;
+}
+
+Animation with_time_track(Animation film) {
+  const auto [first, last] = *film.time;
+  const double end = (frame_count(film) - 1) / film.fps;
+  AnimationTrack track{time_target, Easing::linear, {{0, Json(first).dump()}}};
+  if (end > 0) track.keys.push_back({end, Json(last).dump()});
+  film.tracks.push_back(std::move(track));
+  film.time.reset();
+  return film;
+}
+
+bool has_camera_tracks(const Animation& film) {
+  return std::ranges::any_of(film.tracks, [](const AnimationTrack& track) {
+    return overlap(track.target, camera_target);
+  });
 }
 
 bool has_motion(const Animation& film) {

@@ -20,6 +20,8 @@ struct Keyframe {
 
 /// Returns the keyframes of a film, ascending. Cameras without times count as evenly spaced.
 std::vector<Keyframe> keyframes_of(const Animation& film);
+/// Returns the moment of a keyframe. Throws Error if there is no such keyframe.
+double moment_of(const Animation& film, std::size_t keyframe);
 /// Returns the number of the keyframe that a frame shows: the nearest one within half a frame.
 std::optional<std::size_t> keyframe_at(const std::vector<Keyframe>& keyframes, int frame,
                                        double fps);
@@ -43,6 +45,12 @@ Animation without_keyframe(Animation film, std::size_t keyframe);
 /// Returns the film with another length, its keys at the same parts of it.
 Animation with_length(Animation film, double seconds, double fps);
 
+/// Returns the film with a track of "/time" in the place of its `time`: the same at its first and
+/// its last frame, and between them.
+Animation with_time_track(Animation film);
+
+/// Returns whether tracks move the camera, or parts of it.
+bool has_camera_tracks(const Animation& film);
 /// Returns whether something moves in a film: its frames may differ.
 bool has_motion(const Animation& film);
 
