@@ -6,8 +6,6 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <new>
 #include <string_view>
@@ -15,6 +13,7 @@
 
 #include "film_frames.h"
 #include "pellucid/cpu/threads.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/io/internal/temporary_folder.h"
 #include "pellucid/io/internal/zip_files.h"
 #include "pellucid/scene/error.h"
@@ -41,7 +40,6 @@ bool has_program(const std::string& name) {
 
 /// A film, and all that its thread takes for it.
 struct Work {
-  SceneDescription base;
   std::unique_ptr<Film> film;
   std::unique_ptr<FrameLoader> loader;
   SaveFilm wanted;
@@ -56,11 +54,10 @@ std::string content_type_of(const std::string& format) {
 
 void check_size(std::uintmax_t bytes, std::uintmax_t most) {
   if (bytes <= most) return;
-  throw Error(
-      fmt::format("the film has more than {} MB, the most that a page can be given; make it "
-                  "smaller or shorter, "
-                  "or save the scene and call pellucid animate scene.json -o film.webm",
-                  most >> 20));
+  throw Error(fmt::format(
+      "the film has more than {} MB, the most that a page can be given; make it "
+      "smaller or shorter, or save the scene and call pellucid animate scene.json -o film.webm",
+      most >> 20));
 }
 
 /// Renders and encodes the film into the folder, and returns the path of its file. `progress`
@@ -69,8 +66,8 @@ fs::path make_file(const Work& work, const fs::path& folder,
                    const std::function<bool(const FilmProgress&)>& progress,
                    const std::function<bool()>& cancelled) {
   const bool is_zip = work.wanted.format == "zip";
-  const fs::path frames = folder / "film";
-  const FilmFiles files(is_zip ? frames / "%04d.png" : folder / ("film." + work.wanted.format));
+  const fs::path made = folder / ("film." + work.wanted.format);
+  const FilmFiles files(is_zip ? folder / "film" / "%04d.png" : made);
   RenderOptions options;
   options.machine.threads = work.threads;
   std::uintmax_t bytes = 0;
@@ -90,19 +87,17 @@ fs::path make_file(const Work& work, const fs::path& folder,
   if (!progress({count + 1, count, 0, 0})) throw Cancelled();
   count_bytes(count - 1);
   if (!files.finish(count, work.fps, false, cancelled)) throw Cancelled();
-  if (!is_zip) return folder / ("film." + work.wanted.format);
+  if (!is_zip) return made;
   std::vector<fs::path> pictures;
   for (int frame = 0; frame < count; ++frame) pictures.push_back(files.picture(frame));
-  write_zip(folder / "film.zip", pictures);
-  return folder / "film.zip";
+  write_zip(made, pictures);
+  return made;
 }
 
 SavedFile read_file(const fs::path& path, const Work& work) {
   check_size(fs::file_size(path), work.most_bytes);
-  std::ifstream file(path, std::ios::binary);
-  return {path.filename().string(),
-          content_type_of(work.wanted.format),
-          {std::istreambuf_iterator<char>(file), {}}};
+  return {path.filename().string(), content_type_of(work.wanted.format),
+          read_text_file(path, work.most_bytes)};
 }
 
 /// Returns a message without the folder, which pages do not know.

@@ -58,19 +58,12 @@ export class Timeline {
   // --- The time of the data.
 
   makeSteps(connection) {
-    this.stepSlider = make('input', {type: 'range', min: 0, step: 1, id: 'time',
-      'aria-label': 'Time of the data',
-      oninput: () => {
-        this.hold(this.stepSlider);
-        this.showStep(Number(this.stepSlider.value));
-      },
-      onchange: () => this.letGo(),
-      onkeydown: (event) => this.playByKey(event, this.steps)});
-    this.stepText = make('output', {for: 'time'});
     this.steps = new Player(connection, {skips: false, rate: () => stepRate,
       position: () => this.step(), count: () => this.now.times.length,
       show: (step) => this.showStep(step),
       changed: (isPlaying) => this.playingChanged(this.stepButton, isPlaying)});
+    this.stepSlider = this.slider('time', 'Time of the data', this.steps);
+    this.stepText = make('output', {for: 'time'});
     this.stepButton = this.playButton('the steps of time', this.steps);
     this.stepsRow = make('div', {class: 'time-row', role: 'group', 'aria-label': 'Time'},
       make('span', {}, 'Time'), this.stepButton, this.stepSlider, this.stepText);
@@ -91,28 +84,19 @@ export class Timeline {
   }
 
   tellStep(time, step) {
-    const {times, unit} = this.now;
-    const text = `${shortNumber(time)}${unit ? ` ${unit}` : ''}`;
-    this.stepText.value = `${text} · step ${step + 1} of ${times.length}`;
+    this.stepText.value = `${shortNumber(time)} · step ${step + 1} of ${this.now.times.length}`;
     this.stepSlider.setAttribute('aria-valuetext', this.stepText.value);
   }
 
   // --- The film.
 
   makeFilm(connection) {
-    this.frameSlider = make('input', {type: 'range', min: 0, step: 1, id: 'moment',
-      'aria-label': 'Moment of the film',
-      oninput: () => {
-        this.hold(this.frameSlider);
-        this.showFrame(Number(this.frameSlider.value));
-      },
-      onchange: () => this.letGo(),
-      onkeydown: (event) => this.playByKey(event, this.frames)});
-    this.frameText = make('output', {for: 'moment'});
     this.frames = new Player(connection, {skips: true, rate: () => this.now.fps,
       position: () => this.now.frame, count: () => this.now.frames,
       show: (frame) => this.showFrame(frame),
       changed: (isPlaying) => this.playingChanged(this.frameButton, isPlaying)});
+    this.frameSlider = this.slider('moment', 'Moment of the film', this.frames);
+    this.frameText = make('output', {for: 'moment'});
     this.frameButton = this.playButton('the film', this.frames);
     this.marks = make('div', {class: 'marks', role: 'group', 'aria-label': 'Keyframes'});
     this.saver = new FilmSaver(this.viewer);
@@ -324,6 +308,18 @@ export class Timeline {
     if (!this.viewer.scene) return;
     this.viewer.functionPanel.forget();
     this.viewer.update();
+  }
+
+  /** A slider of the positions of a player. */
+  slider(id, name, player) {
+    const input = make('input', {type: 'range', min: 0, step: 1, id, 'aria-label': name,
+      oninput: () => {
+        this.hold(input);
+        player.show(Number(input.value));
+      },
+      onchange: () => this.letGo(),
+      onkeydown: (event) => this.playByKey(event, player)});
+    return input;
   }
 
   playButton(what, player) {

@@ -2,13 +2,13 @@
 #include "saved_files.h"
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <limits>
 
 #include "page_messages.h"
 #include "pellucid/io/export_transfer_function.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/import_transfer_function.h"
+#include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/io/internal/temporary_folder.h"
 #include "pellucid/scene/error.h"
 
@@ -23,8 +23,7 @@ std::string bytes_of(const std::string& name, const Write& write) {
   const TemporaryFolder folder("a file to save");
   const fs::path path = folder.path() / name;
   write(path);
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  return read_text_file(path, std::numeric_limits<std::size_t>::max());
 }
 
 }  // namespace
