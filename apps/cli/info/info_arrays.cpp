@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "info_numbers.h"
+
 namespace pellucid::cli {
 
 namespace {
@@ -13,11 +15,9 @@ std::string centering_name(const VolumeArray& array) {
 
 /// Also of infinite values, of which no volume can be made.
 std::string component_text(const VolumeStatistics& component) {
-  // The sums turn -0 into 0.
-  std::string text =
-      component.finite == 0
-          ? "no finite value"
-          : fmt::format("{:.6g} to {:.6g}", component.minimum + 0.0, component.maximum + 0.0);
+  std::string text = component.finite == 0
+                         ? "no finite value"
+                         : number(component.minimum) + " to " + number(component.maximum);
   if (component.nan > 0) text += fmt::format(", NaN {} (rendered as vacuum)", component.nan);
   if (component.infinite > 0) text += fmt::format(", infinite {} (refused)", component.infinite);
   return text;

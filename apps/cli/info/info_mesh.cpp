@@ -90,7 +90,6 @@ std::string centering_name(const MeshArray& array) {
   return array.centering == Centering::point ? "point" : "cell";
 }
 
-// The sum turns -0 into 0.
 std::string range_text(const MeshArray& array) {
   std::string text;
   for (int c = 0; c < array.components; ++c) {

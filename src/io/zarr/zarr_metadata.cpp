@@ -351,14 +351,14 @@ void check_extensions(const Node& metadata) {
 
 }  // namespace
 
-const Node& object(const Node& node) {
+const Node& as_object(const Node& node) {
   if (!node.is_object()) node.fail("must be an object");
   return node;
 }
 
 ZarrArray parse_zarr_2(const Node& metadata) {
   ZarrArray array;
-  object(metadata).at("zarr_format", "it must be 2").integer(2, 2);
+  as_object(metadata).at("zarr_format", "it must be 2").integer(2, 2);
   array.shape = sides_of(metadata.at("shape", "list the array's sides"), 0);
   array.chunk = chunk_of(metadata.at("chunks", "list the chunks' sides"), array.shape.size());
   array.type = numpy_type(metadata.at("dtype", "give the type of the numbers"));
@@ -387,7 +387,7 @@ ZarrArray parse_zarr_2(const Node& metadata) {
 
 ZarrArray parse_zarr_3(const Node& metadata) {
   ZarrArray array;
-  object(metadata).at("zarr_format", "it must be 3").integer(3, 3);
+  as_object(metadata).at("zarr_format", "it must be 3").integer(3, 3);
   check_extensions(metadata);
   array.shape = sides_of(metadata.at("shape", "list the array's sides"), 0);
   const Node grid = metadata.at("chunk_grid", "give the grid of chunks");

@@ -81,7 +81,7 @@ struct ZarrArray {
 inline constexpr std::size_t max_zarr_axes = 32;
 
 /// Returns the node. Fails unless it is an object.
-const scene_json::Node& object(const scene_json::Node& node);
+const scene_json::Node& as_object(const scene_json::Node& node);
 
 /// A group or an array of a store.
 struct ZarrNode {

@@ -20,7 +20,7 @@ JsonFile attributes_of(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error)) return {nlohmann::json::object(), file.string()};
   JsonFile attributes = read_data_json(file);
-  object(attributes.root());
+  as_object(attributes.root());
   return attributes;
 }
 
@@ -31,12 +31,12 @@ ZarrNode node_of_version_3(const fs::path& folder, JsonFile metadata) {
   node.version = 3;
   node.metadata = std::move(metadata);
   const Node root = node.metadata.root();
-  object(root).at("zarr_format", "it must be 3").integer(3, 3);
+  as_object(root).at("zarr_format", "it must be 3").integer(3, 3);
   node.is_array =
       root.at("node_type", "it must be \"array\" or \"group\"").one_of({"array", "group"}) == 0;
   node.attributes = {nlohmann::json::object(), node.metadata.name};
   if (const auto attributes = root.find("attributes"); attributes && !attributes->is_null()) {
-    node.attributes.value = object(*attributes).value();
+    node.attributes.value = as_object(*attributes).value();
   }
   return node;
 }
@@ -45,7 +45,7 @@ ZarrNode node_of_version_3(const fs::path& folder, JsonFile metadata) {
 std::optional<ZarrNode> node_in_version_2(const fs::path& folder, const fs::path& root,
                                           const std::string& inner) {
   const JsonFile all = read_data_json(root / ".zmetadata");
-  const auto metadata = object(all.root()).find("metadata");
+  const auto metadata = as_object(all.root()).find("metadata");
   if (!metadata || !metadata->is_object()) return std::nullopt;
   const std::string begin = inner.empty() ? "" : inner + "/";
   ZarrNode node;
@@ -54,7 +54,7 @@ std::optional<ZarrNode> node_in_version_2(const fs::path& folder, const fs::path
   const std::string key = begin + (node.is_array ? ".zarray" : ".zgroup");
   const auto found = metadata->find(key.c_str());
   if (!found) return std::nullopt;
-  node.metadata = {object(*found).value(), all.name + ": " + key};
+  node.metadata = {as_object(*found).value(), all.name + ": " + key};
   node.attributes = {nlohmann::json::object(), all.name};
   const auto attributes = metadata->find((begin + ".zattrs").c_str());
   if (attributes && attributes->is_object()) node.attributes.value = attributes->value();
@@ -65,7 +65,7 @@ std::optional<ZarrNode> node_in_version_2(const fs::path& folder, const fs::path
 std::optional<ZarrNode> node_in_version_3(const fs::path& folder, const fs::path& root,
                                           const std::string& inner) {
   const JsonFile all = read_data_json(root / "zarr.json");
-  const auto consolidated = object(all.root()).find("consolidated_metadata");
+  const auto consolidated = as_object(all.root()).find("consolidated_metadata");
   if (inner.empty() || !consolidated || !consolidated->is_object()) return std::nullopt;
   const auto metadata = consolidated->find("metadata");
   if (!metadata || !metadata->is_object()) return std::nullopt;
@@ -152,7 +152,7 @@ std::optional<ZarrNode> read_zarr_node(const fs::path& folder) {
     return consolidated_node(folder);
   }
   node.metadata = read_data_json(folder / (node.is_array ? ".zarray" : ".zgroup"));
-  object(node.metadata.root());
+  as_object(node.metadata.root());
   node.attributes = attributes_of(folder / ".zattrs");
   return node;
 }
