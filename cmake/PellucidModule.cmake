@@ -91,8 +91,8 @@ function(pellucid_unity target)
   endif()
 endfunction()
 
-# Groups of at most eight sources of one folder, whose names begin with `part`. A new source changes
-# the groups of its folder alone.
+# Puts sources in groups of at most eight of one folder, whose names begin with `part`. A new source
+# changes the groups of its folder alone.
 function(_pellucid_unity_groups part)
   foreach(source IN LISTS ARGN)
     cmake_path(GET source PARENT_PATH folder)
@@ -123,8 +123,8 @@ endfunction()
 #                        [NOT_WEB file...] [WEB file...]): the files of a target. LATER: those that
 # no first picture needs; with PELLUCID_FIRST_PICTURE the files INSTEAD stand in for them. Both
 # builds compile SOURCES alike, in the same groups (pellucid_unity()), so that the whole one takes
-# over their objects. NOT_WEB: those of
-# SOURCES and LATER that WebAssembly does without, with the files WEB in their place.
+# over their objects. NOT_WEB: those of SOURCES and LATER that WebAssembly does without, with the
+# files WEB in their place.
 # tests/first_picture links what is left without LATER, which is kept in global properties:
 #   PELLUCID_FIRST_TARGETS      the targets
 #   PELLUCID_LATER_<target>     as seen from the target's folder
