@@ -37,6 +37,9 @@ class BlockMarch {
     alive = rays_.end > D(0);
   }
 
+  /// The rays as they were given.
+  const LaneRays<N>& rays() const noexcept { return rays_; }
+
   M alive;                     ///< whether a lane's ray is not yet through
   D in_cells_until;            ///< smooth blocks that begin before are taken as cells
   M smooth;                    ///< whether a smooth stretch is behind those found

@@ -31,9 +31,9 @@ CellPositions<N> cell_places(const PacketGrid& grid, const BlockMarch<N>& rays,
   for (int a = 0; a < 3; ++a) {
     const I lower = gather(stretches.block[a], stretch) * I(block_width);
     places.cell[a] = lower + in_block[a];
-    direction[a] = D::load(rays.direction[a]);
-    place[a] = (D::load(rays.origin[a]) + from * direction[a]) - convert<double>(lower);
-    const D inverse = D(1) / direction[a];
+    direction[a] = rays.rays().direction[a];
+    place[a] = (rays.rays().origin[a] + from * direction[a]) - convert<double>(lower);
+    const D inverse = rays.rays().inverse[a];
     const F last_cell = convert<float>(min(I(grid.cells[a]) - lower, I(block_width)) - I(1));
     const F here = convert<float>(in_block[a]);
     const BatchMask<N> forward = inverse > D(0);

@@ -67,8 +67,9 @@ class GradientLoads {
  private:
   void load(M lanes, const Batch<std::int32_t, N> (&cell)[3]) const noexcept {
     with_value_type(grid_.type, [&](auto value) noexcept {
-      load_values<decltype(value)>(lanes, cell);
-      may_have_vacuum_ = !std::is_integral_v<decltype(value)>;
+      using Value = decltype(value);
+      const bool inner = load_values<Value>(lanes, cell);
+      is_complete_ = inner && (std::is_integral_v<Value> || !has_vacuum(lanes));
     });
   }
   /// The lengths of gradients at the corners, in the world.
@@ -92,9 +93,21 @@ class GradientLoads {
   /// Returns whether only the corners are needed.
   bool within_cells() const noexcept { return light_.of_field != 0 && light_.factor == nullptr; }
 
-  /// Loads corners and what is beyond them along each axis.
+  /// Returns whether any of the values of these lanes is NaN, or too large to be told from it.
+  bool has_vacuum(M lanes) const noexcept {
+    F sum(0);
+    for (int n = 0; n < 8; ++n) {
+      sum += F::load(corner_[n]);
+      if (within_cells()) continue;
+      for (int a = 0; a < 3; ++a) sum += F::load(outside_[a][n]);
+    }
+    return any(lanes & is_nan(sum - sum));
+  }
+
+  /// Loads corners and what is beyond them along each axis. Returns whether all lanes have values
+  /// there.
   template <class Value>
-  [[gnu::flatten, gnu::noinline]] void load_values(
+  [[gnu::flatten, gnu::noinline]] bool load_values(
       M lanes, const Batch<std::int32_t, N> (&of_lanes)[3]) const noexcept {
     std::int32_t cell[3][N];
     for (int a = 0; a < 3; ++a) of_lanes[a].store(cell[a]);
@@ -124,6 +137,7 @@ class GradientLoads {
       const std::int32_t of_lane[3] = {cell[0][l], cell[1][l], cell[2][l]};
       load_at_border<Value>(l, of_lane);
     }
+    return at_border == 0;
   }
 
   /// Loads a cell in each lane that has values on all sides, from the place of its lowest corner.
@@ -177,41 +191,49 @@ class GradientLoads {
   }
 
   /// The derivative along an axis at the corners, by the distance of two values (GradientKind).
+  /// Where no value is missing it is the same to the bit whatever other lanes have.
   CellCorners<F> derivative(int a, bool of_field) const noexcept {
-    return may_have_vacuum_ ? derivative<true>(a, of_field) : derivative<false>(a, of_field);
-  }
-  template <bool may_have_vacuum>
-  CellCorners<F> derivative(int a, bool of_field) const noexcept {
+    if (of_field || is_complete_) return derivative_inside(a, of_field);
     CellCorners<F> result;
     const M flat = F::load(flat_[a]) > F(0);
     for (int n = 0; n < 8; ++n) {
       const bool is_upper = (n >> a & 1) != 0;
       const F here = F::load(corner_[n]), other = F::load(corner_[n ^ 1 << a]);
-      const F step = is_upper ? here - other : other - here;
-      if (of_field) {
-        result.value[n] = step;
-        continue;
-      }
       // What is beyond, on the side of this corner; where the cell is flat, on both sides.
       const F own = F::load(outside_[a][n]), across = F::load(outside_[a][n ^ 1 << a]);
       const F own_step = is_upper ? own - here : here - own;
-      const F across_step = is_upper ? here - across : across - here;
-      const F in_cell = select(flat, across_step, step);
+      const F beside = select(flat, across, other);
+      const F in_cell = is_upper ? here - beside : beside - here;
       M has_own = F::load(is_upper ? has_behind_[a] : has_before_[a]) > F(0);
       M has_cell = (!flat) | (F::load(is_upper ? has_before_[a] : has_behind_[a]) > F(0));
-      if constexpr (may_have_vacuum) {
-        has_own = has_own & !is_nan(own);
-        has_cell = has_cell & !is_nan(in_cell);
+      has_own = has_own & !is_nan(own);
+      has_cell = has_cell & !is_nan(in_cell);
+      const F central = is_upper ? own - beside : beside - own;
+      result.value[n] = select(has_own & has_cell, F(0.5f) * central,
+                               select(has_own, own_step, select(has_cell, in_cell, F(0))));
+    }
+    return result;
+  }
+  /// The same where no value is missing.
+  CellCorners<F> derivative_inside(int a, bool of_field) const noexcept {
+    CellCorners<F> result;
+    for (int n = 0; n < 8; ++n) {
+      if ((n >> a & 1) != 0) continue;
+      const int upper = n | 1 << a;
+      const F first = F::load(corner_[n]), second = F::load(corner_[upper]);
+      if (of_field) {
+        result.value[n] = result.value[upper] = second - first;
+      } else {
+        result.value[n] = F(0.5f) * (second - F::load(outside_[a][n]));
+        result.value[upper] = F(0.5f) * (F::load(outside_[a][upper]) - first);
       }
-      const F sum = select(has_own, own_step, F(0)) + select(has_cell, in_cell, F(0));
-      result.value[n] = select(has_own & has_cell, F(0.5f) * sum, sum);
     }
     return result;
   }
 
   const PacketGrid& grid_;
   const PacketLight& light_;
-  mutable bool may_have_vacuum_ = false;
+  mutable bool is_complete_ = false;  ///< whether all values are there, in all lanes
   mutable float corner_[8][N] = {}, outside_[3][8][N] = {};
   mutable float has_before_[3][N] = {}, has_behind_[3][N] = {}, flat_[3][N] = {};
 };

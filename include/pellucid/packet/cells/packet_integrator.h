@@ -370,37 +370,32 @@ class PacketIntegrator {
     const auto growth = [&](F deviation) noexcept {
       return max(like_.variance_with(lit.signs, deviation) - sampled_.variance(), F(0));
     };
-    const F of_three = seen * lit.by_three, of_six = seen * lit.by_six;
-    const F variance = growth(of_six), variance_by_three = growth(of_three);
-    const M by_three = variance_by_three <= largest;
-    const M take = on & piece.end.found & affordable & (by_three | (variance <= largest));
+    const NodeDeviations<N> deviations(lit.range, lit.turns, lit.sharpness, piece.seen.depth);
+    F deviation = seen * deviations.by_three(), variance = growth(deviation);
+    const M payable = on & piece.end.found & affordable;
+    const M more = payable & !(variance <= largest);
+    if (any(more)) {
+      deviation = select(more, seen * deviations.by_six(), deviation);
+      variance = growth(deviation);
+    }
+    const M take = payable & (variance <= largest);
     const M rest = on & !take;
     if (any(rest)) {
       const F half = F(0.5f) * piece.place;
       // Light may turn in a small part of a cell, and a table be narrow.
-      const M halve = rest & piece.end.found & affordable & (single_.pieces < I(max_lit_pieces)) &
+      const M halve = rest & payable & (single_.pieces < I(max_lit_pieces)) &
                       (ahead * half >= F(narrowest_lit)) & (variance <= F(1e6f) * largest);
       single_.cap = select(halve, half, single_.cap);
       scalar_fallback_ = scalar_fallback_ | (rest & !halve);
     }
     if (none(take)) return;
     // What becomes of a lane must not depend on the others: each has its own rule.
-    const M more = take & !by_three;
-    Rgb<F> color{};
-    if (any(take & by_three)) {
-      color = light_.template color<3>(lit, piece, single_, take, transfer_, single_.color);
-    }
-    if (any(more)) {
-      const Rgb<F> better =
-          light_.template color<6>(lit, piece, single_, take, transfer_, single_.color);
-      color = {select(more, better.r, color.r), select(more, better.g, color.g),
-               select(more, better.b, color.b)};
-    }
-    s.radiance = s.opacity * color;
+    s.radiance =
+        s.opacity * light_.color(lit, piece, single_, take, take & more, transfer_, single_.color);
     compositor_.add(take, s);
-    sampled_.charge(take, compositor_.budget, select(more, variance, variance_by_three), linear,
-                    s.opacity, length, left, transparency);
-    like_.add(take, lit.signs, select(more, of_six, of_three));
+    sampled_.charge(take, compositor_.budget, variance, linear, s.opacity, length, left,
+                    transparency);
+    like_.add(take, lit.signs, deviation);
     pieces_ += select(take, I(1), I(0));
     panels_ += select(take, I(1), I(0));
     proved_ = proved_ & !take;

@@ -4,6 +4,7 @@
 #include "pellucid/error/random_errors.h"
 #include "pellucid/packet/cells/span_piece.h"
 #include "pellucid/packet/light.h"
+#include "pellucid/segment/cubic_panel.h"
 #include "pellucid/segment/gauss_panel.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -19,10 +20,6 @@ template <int N>
 struct LightOfPiece {
   using F = Batch<float, N>;
   GradientStretch<F> along;
-  /// Standard deviations of the color by three and by six nodes: error_of_three_nodes() and
-  /// error_of_six_nodes() times the range of the colors. Errors are charged at four deviations, at
-  /// six where a piece is alone or pieces are alike (LikeErrors).
-  F by_three, by_six;
   F color_error;                        ///< of the color beside these: tables' kinks and rounding
   F range;                              ///< of the colors
   F turns, sharpness;                   ///< as of error_of_three_nodes()
@@ -30,21 +27,91 @@ struct LightOfPiece {
   typename LikeErrors<F>::Signs signs;  ///< of the piece, for errors that repeat
 };
 
-/// Standard deviations of a piece's color by three and by six nodes (LightOfPiece).
+/// Standard deviations of a piece's color by three and by six nodes: error_of_three_nodes() and
+/// error_of_six_nodes() times the range of the colors. Errors are charged at four deviations, at
+/// six where a piece is alone or pieces are alike (LikeErrors).
 template <int N>
-struct NodeDeviations {
+class NodeDeviations {
+ public:
   using F = Batch<float, N>;
-  F by_three, by_six;
 
-  NodeDeviations(F range, F turns, F sharpness, F depth) noexcept {
-    const F one_deviation = F(1.5f / RandomErrors<F>::deviations) * range;
-    const auto deviation = [&](F of_nodes) noexcept {
-      const F deep = select(depth <= F(8), min(F(2) * of_nodes, F(1)), F(1));
-      return one_deviation * select(depth <= F(1), of_nodes, deep);
-    };
-    by_three = deviation(error_of_three_nodes(turns, sharpness));
-    by_six = deviation(error_of_six_nodes(turns, sharpness));
+  NodeDeviations(F range, F turns, F sharpness, F depth) noexcept
+      : turns_(turns),
+        sharpness_(sharpness),
+        range_(F(1.5f / RandomErrors<F>::deviations) * range),
+        depth_(depth) {}
+
+  F by_three() const noexcept { return deviation(error_of_three_nodes(turns_, sharpness_)); }
+  F by_six() const noexcept { return deviation(error_of_six_nodes(turns_, sharpness_)); }
+
+ private:
+  F deviation(F of_nodes) const noexcept {
+    const F deep = select(depth_ <= F(8), min(F(2) * of_nodes, F(1)), F(1));
+    return range_ * select(depth_ <= F(1), of_nodes, deep);
   }
+
+  F turns_, sharpness_, range_, depth_;
+};
+
+/// Three Gauss nodes on [0,1] in some lanes, six in the others.
+template <int N>
+class NodesOfLanes {
+ public:
+  using F = Batch<float, N>;
+  using M = BatchMask<N>;
+
+  explicit NodesOfLanes(M more) noexcept : more_(more), any_more_(any(more)) {}
+
+  /// Calls visit(j) for each node. In lanes of three nodes the others weigh nothing.
+  template <class Visit>
+  void for_each(const Visit& visit) const noexcept {
+    for (int j = 0; j < 3; ++j) visit(j);
+    if (!any_more_) return;
+    for (int j = 3; j < 6; ++j) visit(j);
+  }
+
+  F weight(int j) const noexcept {
+    return j < 3 ? of_rules(few_.weight[j], many_.weight[j]) : of_rules(0, many_.weight[j]);
+  }
+  F position(int j) const noexcept { return of_rules(few_.position[j % 3], many_.position[j]); }
+  /// Returns a cubic of these Bernstein coefficients at a node.
+  F value(int j, const F (&b)[4]) const noexcept { return dot(few_.basis, many_.basis, j, b); }
+  /// Returns its integral from 0 to the node.
+  F integral(int j, const F (&b)[4]) const noexcept {
+    return dot(few_.integral, many_.integral, j, b);
+  }
+  /// Returns the depth at a node from the rates at all of them, as depth_to_node().
+  F collocated(int j, const F (&rate)[6]) const noexcept {
+    static constexpr auto few = gauss_legendre<float, 3>();
+    static constexpr auto many = gauss_legendre<float, 6>();
+    F depth(0);
+    for_each([&](int k) noexcept {
+      const float of_few = k < 3 ? few.collocation[j % 3][k] : 0.0f;
+      depth += of_rules(of_few, many.collocation[j][k]) * rate[k];
+    });
+    return depth;
+  }
+
+ private:
+  static constexpr CubicNodes<float, 3> few_{};
+  static constexpr CubicNodes<float, 6> many_{};
+
+  F of_rules(float of_few, float of_many) const noexcept {
+    return any_more_ ? select(more_, F(of_many), F(of_few)) : F(of_few);
+  }
+  F dot(const float (&few)[3][4], const float (&many)[6][4], int j,
+        const F (&b)[4]) const noexcept {
+    if (!any_more_) return dot(few[j], b);
+    if (j >= 3) return dot(many[j], b);
+    return select(more_, dot(many[j], b), dot(few[j], b));
+  }
+  static F dot(const float (&a)[4], const F (&b)[4]) noexcept {
+    return multiply_add(F(a[0]), b[0], F(a[3]) * b[3]) +
+           multiply_add(F(a[1]), b[1], F(a[2]) * b[2]);
+  }
+
+  M more_;
+  bool any_more_;
 };
 
 /// The light of the spans that lanes work on.
@@ -133,11 +200,10 @@ class SpanLight {
                                             const Transfer& transfer) const noexcept {
     // The range of the table's colors within the piece.
     const F change = min(piece.spread.range, piece.spread.slope * range_of(piece.seen));
-    return measure(change, piece.spread.kinks, piece.seen.depth, F(transfer.largest_color), from,
-                   to);
+    return measure(change, piece.spread.kinks, F(transfer.largest_color), from, to);
   }
   /// Bounds the light on colors up to `largest` that differ by `change`; `kinks`: their error.
-  [[gnu::noinline]] LightOfPiece<N> measure(F change, F kinks, F depth, F largest, F from,
+  [[gnu::noinline]] LightOfPiece<N> measure(F change, F kinks, F largest, F from,
                                             F to) const noexcept {
     LightOfPiece<N> result;
     result.along = along(from, to);
@@ -153,9 +219,6 @@ class SpanLight {
     // The direction to a point light has its distance for a denominator, as the normal |g|.
     const F turns = (squares.upper + flat) / max(squares.lower + flat, F(smallest_normal<float>)) *
                     turns_of_distance(result.along);
-    const NodeDeviations<N> nodes(range, turns, bounds.sharpness, depth);
-    result.by_three = nodes.by_three;
-    result.by_six = nodes.by_six;
     result.range = range;
     result.turns = turns;
     result.sharpness = bounds.sharpness;
@@ -193,16 +256,55 @@ class SpanLight {
     return {extinction(span, value, u), lit_at(of, u).apply(unlit)};
   }
 
-  /// Returns the color of a piece by Nodes Gauss nodes.
-  template <int Nodes>
+  /// Returns the color of a piece by three Gauss nodes, or by six in the lanes of `more`. The
+  /// depths at the nodes are exact for the extinction of a table; where a factor weakens it, those
+  /// of PanelNodes.
   [[gnu::noinline]] Rgb<F> color(const LightOfPiece<N>& of, const SpanPiece<float, N>& piece,
-                                 const SpanLanes<float, N>& span, M lanes,
+                                 const SpanLanes<float, N>& span, M lanes, M more,
                                  const BinnedTransfer& transfer,
                                  ColorInterval<F>& known) const noexcept {
-    const detail::PanelNodes<Nodes, F> nodes(piece.length, [&](F u) noexcept {
-      return material(of, piece, span, u, lanes, transfer, known);
+    const NodesOfLanes<N> nodes(more);
+    F rate[6], depth[6];
+    if (light_.factor == nullptr) {
+      const ExtinctionInterval<F>& interval = span.extinction;
+      F end[4];
+      for (int k = 0; k < 4; ++k) {
+        end[k] = piece.length *
+                 (interval.at_lower + interval.slope * (piece.parts.front.b[k] - interval.lower));
+      }
+      nodes.for_each([&](int j) noexcept {
+        rate[j] = max(nodes.value(j, end), F(0));
+        depth[j] = nodes.integral(j, end);
+      });
+    } else {
+      nodes.for_each([&](int j) noexcept {
+        const F value = nodes.value(j, piece.parts.front.b);
+        rate[j] = piece.length * extinction(span, value, nodes.position(j));
+      });
+      nodes.for_each([&](int j) noexcept { depth[j] = nodes.collocated(j, rate); });
+    }
+    // As panel_color().
+    F origin(std::numeric_limits<float>::max());
+    nodes.for_each(
+        [&](int j) noexcept { origin = min(origin, select(rate[j] > F(0), depth[j], origin)); });
+    F sum(0);
+    Rgb<F> color{};
+    nodes.for_each([&](int j) noexcept {
+      const F value = clamp(nodes.value(j, piece.parts.front.b), piece.seen.color_lower,
+                            piece.seen.color_upper);
+      const Rgb<F> unlit = color_at(transfer, value, lanes, known);
+      const CubicBernstein<F>(&g)[3] = of.along.component;
+      const Vec3<F> gradient{nodes.value(j, g[0].b), nodes.value(j, g[1].b),
+                             nodes.value(j, g[2].b)};
+      const Vec3<F> position =
+          light_.points > 0 ? of.along.position(nodes.position(j)) : Vec3<F>{F(0), F(0), F(0)};
+      const Lit<F> lit =
+          light_up(light_.reflection, light_.light, light_.lights, gradient, position, to_eye_);
+      const F weight = nodes.weight(j) * rate[j] * exp(min(origin - depth[j], F(0)));
+      sum += weight;
+      color += weight * lit.apply(unlit);
     });
-    return detail::panel_color(nodes);
+    return (F(1) / select(sum > F(0), sum, F(1))) * color;
   }
 
  protected:
@@ -256,12 +358,19 @@ class SpanLight {
 
   /// The gradients on the share [from, to] of the lanes' cells.
   GradientStretch<F> along(F from, F to) const noexcept {
-    GradientStretch<F> result{
-        {restrict_to(gradient_[0], from, to), restrict_to(gradient_[1], from, to),
-         restrict_to(gradient_[2], from, to)},
-        {},
-        F(0),
-        to_eye_};
+    GradientStretch<F> result{{gradient_[0], gradient_[1], gradient_[2]}, {}, F(0), to_eye_};
+    // By two cuts, whose rounding is part of gradient_rounding. At 1 a cut does not give the same
+    // to the bit.
+    const F beginning = from / max(to, F(smallest_normal<float>));
+    const M ends = to < F(1);
+    const bool cuts_end = any(ends), cuts_beginning = any(from > F(0));
+    for (CubicBernstein<F>& f : result.component) {
+      if (cuts_end) {
+        const CubicBernstein<F> front = cut(f, to).front;
+        for (int k = 0; k < 4; ++k) f.b[k] = select(ends, front.b[k], f.b[k]);
+      }
+      if (cuts_beginning) f = cut(f, beginning).back;
+    }
     if (light_.points > 0) {
       result.middle = entry_ - to_eye_ * (F(0.5f) * (from + to) * length_);
       result.half_length = F(0.5f) * (to - from) * length_;
@@ -299,7 +408,7 @@ class SpanLight {
   [[gnu::noinline]] F next_kink(M lanes, F from) const noexcept {
     F nearest(2);
     from = min(from, F(1));
-    const GradientStretch<F> along = this->along(from, F(1));
+    const GradientStretch<F> whole = around(F(0));
     const auto put = [&](M ends, F place) noexcept {
       nearest = select(ends, min(nearest, from + (F(1) - from) * place), nearest);
     };
@@ -316,14 +425,19 @@ class SpanLight {
     };
     const auto here = [](const PieceEnd<F>& end) noexcept { return end.place; };
     const bool highlights = has_kink_in_highlight(light_.reflection);
+    const bool begun = any(from > F(0));
+    const auto left_along = [&](const Vec3<F>& direction) noexcept {
+      const CubicBernstein<F> f = whole.along(direction);
+      return begun ? restrict_to(f, from, F(1)) : f;
+    };
     for (int i = 0; i < light_.lights; ++i) {
       if (light_.light[i].kind == Kind::point) {
-        look_at_point(along, light_.light[i], look_at);
+        look_at_point(along(from, F(1)), light_.light[i], look_at);
         continue;
       }
       const LightDirections<F> to = directions(light_.light[i], Vec3<F>{}, to_eye_);
-      look_at(along.along(to.light), here);
-      if (highlights && light_.light[i].kind != Kind::head) look_at(along.along(to.half), here);
+      look_at(left_along(to.light), here);
+      if (highlights && light_.light[i].kind != Kind::head) look_at(left_along(to.half), here);
     }
     return nearest;
   }

@@ -352,7 +352,7 @@ class LayeredPacket {
     const auto growth = [&](F deviation) noexcept {
       return max(like_.variance_with(signs, deviation) - sampled_.variance(), F(0));
     };
-    const F of_three = seen * deviations.by_three, of_six = seen * deviations.by_six;
+    const F of_three = seen * deviations.by_three(), of_six = seen * deviations.by_six();
     const F variance = growth(of_six), variance_by_three = growth(of_three);
     const M by_three = affordable & (!by_means) & (variance_by_three <= largest);
     const M by_six = affordable & (!by_means) & (!by_three) & (variance <= largest);
@@ -406,7 +406,7 @@ class LayeredPacket {
     const F depth_error = select(smooth, min(apart, abs(few.total - many.total)), apart);
     const F one_deviation = F(1.0f / RandomErrors<F>::deviations);
     const NodeDeviations<N> by_nodes(range, sum.turns, sum.sharpness, many.total);
-    const F of_light = select(even, by_nodes.by_six, one_deviation * range);
+    const F of_light = select(even, by_nodes.by_six(), one_deviation * range);
     const F color_deviation =
         select(smooth, min(of_light, one_deviation * F(2) * change), of_light);
     const auto within = [](F x, F lower, F upper) noexcept { return min(max(x, lower), upper); };
@@ -455,8 +455,7 @@ class LayeredPacket {
         return select(any_colors, c, Rgb<F>{F(0), F(0), F(0)});
       };
       const Rgb<F> upper = shown(colors.upper);
-      layer.lit =
-          layer.light.measure(colors.range, F(0), found.most, largest_component(upper), from_, to);
+      layer.lit = layer.light.measure(colors.range, F(0), largest_component(upper), from_, to);
       colors = {layer.lit.bounds.lower.apply(shown(colors.lower)),
                 layer.lit.bounds.upper.apply(upper), layer.lit.range, layer.lit.color_error};
       sum.light_up(here, layer.lit);
