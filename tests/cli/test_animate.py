@@ -6,6 +6,7 @@ import math
 import os
 import shutil
 import signal
+import struct
 import subprocess
 import time
 import unittest
@@ -212,6 +213,24 @@ class Animate(ProgramTest):
         self.assertEqual(len(functions), 1)
         last = json.loads(functions.pop())["points"][-1]["value"]
         self.assertGreater(last, 7)  # the third step's, not the first one's
+
+    def test_one_function_for_all_steps_of_large_data(self):
+        # So large that every third value along each axis tells what they are.
+        side, count = 120, 12
+        for i in range(count):
+            header = (b"{'descr': '|u1', 'fortran_order': False, 'shape': (%d, %d, %d)}"
+                      % (side, side, side))
+            head = b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header
+            row = bytes(j * (20 + 19 * i) // (side - 1) for j in range(side))
+            self.write(f"run_{i:02}.npy", head + row * side ** 2)
+        self.succeed("animate", "run_%02d.npy", "--look", "haze", "--size", "4", "-o", "f/%d.png")
+        self.assertEqual(len(self.frames()), count)
+        functions = {png_texts(self.read(f"f/{i}.png"))["pellucid.transfer_function"]
+                     for i in range(count)}
+        self.assertEqual(len(functions), 1)
+        last = json.loads(functions.pop())["points"][-1]["value"]
+        self.assertGreater(last, 200)
+        self.assertLessEqual(last, 230)
 
     def test_time_of_a_scene(self):
         self.write("run.vti", steps([0, 3], [[1], [8]]))

@@ -3,8 +3,10 @@
 // What a scene leaves to its data, chosen from all steps of them.
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
-#include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -29,12 +31,21 @@ std::vector<double> chosen(const std::vector<double>& times) {
 
 /// Every second value of several volumes along each axis, one volume above the other, in the box of
 /// the first: distributions and lengths are those of all, and so the functions made from them.
+/// Every third or fourth value, and so on, of volumes so large that these would be more than half
+/// of one.
 class PooledVolume {
  public:
+  explicit PooledVolume(std::size_t volumes) : volumes_(volumes) {}
+
   void add(const Volume& volume) {
     if (layers_ == 0) {
       description_ = volume.description();
-      std::visit([&](const auto& values) { make_empty(values); }, volume.data());
+      constexpr std::size_t always = std::size_t{1} << 21;
+      const auto [nx, ny, nz] = description_.dimensions;
+      const auto values = static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny) *
+                          static_cast<std::size_t>(nz);
+      while (taken() > std::max(always, values / 2)) ++apart_;
+      std::visit([&](const auto& of_type) { make_empty(of_type); }, volume.data());
     }
     std::visit([&](auto& pooled) { append(volume, pooled); }, values_);
   }
@@ -42,7 +53,7 @@ class PooledVolume {
   Volume take() {
     const std::array<int, 3> whole = description_.dimensions;
     description_.coordinates = {};
-    description_.dimensions = {(whole[0] + 1) / 2, (whole[1] + 1) / 2, layers_};
+    description_.dimensions = {taken(whole[0]), taken(whole[1]), layers_};
     for (int a = 0; a < 3; ++a) {
       const auto axis = static_cast<std::size_t>(a);
       description_.placement.spacing[a] *=
@@ -58,9 +69,20 @@ class PooledVolume {
   }
 
  private:
+  /// Returns how many of these values along an axis are taken.
+  int taken(int values) const { return (values + apart_ - 1) / apart_; }
+  /// Returns how many of all values are, if all volumes have the dimensions of the first.
+  std::size_t taken() const {
+    std::size_t product = volumes_;
+    for (const int side : description_.dimensions) product *= static_cast<std::size_t>(taken(side));
+    return product;
+  }
+
   template <class Value>
   void make_empty(const DataArray<Value>&) {
-    values_ = std::vector<Value>();
+    std::vector<Value> empty;
+    empty.reserve(taken());
+    values_ = std::move(empty);
   }
 
   template <class Value>
@@ -69,12 +91,12 @@ class PooledVolume {
     if (nx != description_.dimensions[0] || ny != description_.dimensions[1]) return;
     std::visit(
         [&](const auto& values) {
-          for (int z = 0; z < nz; z += 2, ++layers_) {
-            for (int y = 0; y < ny; y += 2) {
+          for (int z = 0; z < nz; z += apart_, ++layers_) {
+            for (int y = 0; y < ny; y += apart_) {
               const std::size_t row = (static_cast<std::size_t>(z) * static_cast<std::size_t>(ny) +
                                        static_cast<std::size_t>(y)) *
                                       static_cast<std::size_t>(nx);
-              for (int x = 0; x < nx; x += 2) {
+              for (int x = 0; x < nx; x += apart_) {
                 pooled.push_back(static_cast<Value>(values[row + static_cast<std::size_t>(x)]));
               }
             }
@@ -83,7 +105,9 @@ class PooledVolume {
         volume.data());
   }
 
+  std::size_t volumes_;
   Volume::Description description_;
+  int apart_ = 2;  ///< of the values that are taken
   int layers_ = 0;
   std::variant<std::vector<std::uint8_t>, std::vector<std::int8_t>, std::vector<std::uint16_t>,
                std::vector<std::int16_t>, std::vector<std::uint32_t>, std::vector<std::int32_t>,
@@ -110,14 +134,14 @@ void write_look(Look look, LayerDescription& layer) {
   layer.function_change = {};
 }
 
-/// Returns whether there is something to be chosen.
-bool choose(LayerDescription& layer, const Volume& first, const Volume& pooled) {
+/// Returns whether there is something to be chosen. `of_first`: the look that the first step has,
+/// of layers that take one.
+bool choose(LayerDescription& layer, const std::optional<Look>& of_first, const Volume& pooled) {
   const FunctionChange& change = layer.function_change;
-  if (takes_look(layer)) {
-    const Look of_first = look_of(first, layer);
-    if (of_first.as_labels) return false;
-    Look look = choose_look(pooled, of_first.name, change);
-    look.reason = of_first.reason;
+  if (of_first) {
+    if (of_first->as_labels) return false;
+    Look look = choose_look(pooled, of_first->name, change);
+    look.reason = of_first->reason;
     write_look(std::move(look), layer);
     return true;
   }
@@ -165,15 +189,15 @@ std::vector<std::size_t> choose_for_all_steps(SceneDescription& description,
       continue;
     }
     FieldSource source = layer.field;
-    std::shared_ptr<const Volume> first;
-    PooledVolume pooled;
+    std::optional<Look> of_first;
+    PooledVolume pooled(steps.size());
     for (const double step : steps) {
       source.options.time = step;
-      const auto volume = std::make_shared<const Volume>(load_field(source));
-      pooled.add(*volume);
-      if (!first) first = volume;
+      const Volume volume = load_field(source);
+      if (step == steps.front() && takes_look(layer)) of_first = look_of(volume, layer);
+      pooled.add(volume);
     }
-    if (choose(layer, *first, pooled.take())) changed_layers.push_back(i);
+    if (choose(layer, of_first, pooled.take())) changed_layers.push_back(i);
   }
   return changed_layers;
 }

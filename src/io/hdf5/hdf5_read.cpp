@@ -17,6 +17,7 @@
 #include "axes/value_meaning.h"
 #include "axes/variable_notes.h"
 #include "grid_modules/grid_module.h"
+#include "grid_modules/hand_over.h"
 #include "hdf5_attributes.h"
 #include "hdf5_imaris.h"
 #include "hdf5_parts.h"
@@ -228,15 +229,7 @@ void read_whole_numbers(hid_t id, const Dataset& dataset, const GridPart& part,
     rounding.merge(components.back().rounding());
   }
   unify(components);
-  for (WholeNumbers& component : components) {
-    const VolumeData kept = component.take();
-    std::visit(
-        [&](const auto& of_type) {
-          const auto all = std::as_bytes(std::span(of_type.data(), of_type.size()));
-          std::ranges::copy(all, values.next(component.type()).begin());
-        },
-        kept);
-  }
+  for (WholeNumbers& component : components) hand_over(component.take(), values);
   if (rounding.count > 0) values.note = rounding.text(points * components.size());
 }
 
@@ -271,14 +264,7 @@ void read_values(hid_t id, const Dataset& dataset, const GridPart& part, Compone
         data);
     fills += count_fills(data, dataset);
     apply_meaning(std::span(&data, 1), dataset.meaning);
-    std::visit(
-        [&](const auto& of_type) {
-          const auto all = std::as_bytes(std::span(of_type.data(), of_type.size()));
-          const std::span<std::byte> to = values.next(std::string(type_name(data)));
-          if (to.size() != all.size()) throw Error("the file was changed while it was read");
-          std::ranges::copy(all, to.begin());
-        },
-        data);
+    hand_over(std::move(data), values);
   }
   if (fills > 0) {
     values.note = std::to_string(fills) + " values of \"" + dataset.about.name +

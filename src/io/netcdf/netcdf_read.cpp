@@ -15,6 +15,7 @@
 #include "axes/positions_beside.h"
 #include "axes/variable_notes.h"
 #include "grid_modules/grid_module.h"
+#include "grid_modules/hand_over.h"
 #include "netcdf_variables.h"
 #include "pellucid/scene/error.h"
 #include "volumes/stored_numbers.h"
@@ -320,18 +321,10 @@ void read_grid(const std::filesystem::path& path, const std::string& name, const
   const std::optional<std::uint8_t> byte = unmarked_fill(*variable);
   for (int c = range.first; c < range.first + range.number; ++c) {
     of->volume.set_component(std::span(box.start), variable->sides, c);
-    const VolumeData data = read_component(*of, box, fills, values.note);
-    std::visit(
-        [&](const auto& of_type) {
-          const auto all = std::as_bytes(std::span(of_type.data(), of_type.size()));
-          const std::span<std::byte> to = values.next(std::string(type_name(data)));
-          if (to.size() != all.size()) throw Error("the file was changed while it was read");
-          std::ranges::copy(all, to.begin());
-          if (!byte || all.size() != box.points) return;
-          chunks.count(*of, box, {reinterpret_cast<const std::uint8_t*>(all.data()), all.size()},
-                       *byte);
-        },
-        data);
+    const std::span<const std::byte> all =
+        hand_over(read_component(*of, box, fills, values.note), values);
+    if (!byte || all.size() != box.points) continue;
+    chunks.count(*of, box, {reinterpret_cast<const std::uint8_t*>(all.data()), all.size()}, *byte);
   }
   if (const std::string note = note_of(fills, name); !note.empty()) values.note = note;
   if (byte && chunks.filled > 0) values.note = chunks.note(*variable, *byte);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "grid_modules/grid_module.h"
+#include "grid_modules/hand_over.h"
 #include "pellucid/scene/error.h"
 #include "volumes/stored_numbers.h"
 
@@ -232,13 +233,7 @@ void read_whole_numbers(const openvdb::Int64Grid& grid, const Box& box, std::siz
   kept.add(std::span<const std::int64_t>(numbers));
   const Rounding rounding = kept.rounding();
   if (rounding.count > 0) values.note = rounding.text(points);
-  const VolumeData data = kept.take();
-  std::visit(
-      [&](const auto& of_type) {
-        const auto all = std::as_bytes(std::span(of_type.data(), of_type.size()));
-        std::ranges::copy(all, values.next(kept.type()).begin());
-      },
-      data);
+  hand_over(kept.take(), values);
 }
 
 void read_grid(const std::filesystem::path& path, const std::string& name, const AxisLetters&,
