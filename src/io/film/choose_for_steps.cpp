@@ -107,7 +107,7 @@ class PooledVolume {
 
   std::size_t volumes_;
   Volume::Description description_;
-  int apart_ = 2;  ///< of the values that are taken
+  int apart_ = 2;  ///< distance of the values that are taken
   int layers_ = 0;
   std::variant<std::vector<std::uint8_t>, std::vector<std::int8_t>, std::vector<std::uint16_t>,
                std::vector<std::int16_t>, std::vector<std::uint32_t>, std::vector<std::int32_t>,
