@@ -132,6 +132,8 @@ Json timeline_json(const SceneState& state) {
           {"frame", state.frame()},
           {"keyframes", std::move(keys)},
           {"keyframe", chosen ? Json(*chosen) : Json()},
+          {"moves_data", film.moves_data()},
+          {"by_steps", film.by_steps},
           {"turns", film.turntable ? Json(film.turntable->turns) : Json()},
           {"formats", savable_film_formats()}};
 }

@@ -32,7 +32,8 @@ Lettering lettering_of(const SceneDescription& description);
 ///    (slice_steps_json()), "components", "arrays", "times"}], "box": {"lower", "upper"},
 ///    "timeline": {"times", "time", "follows" (whether each layer follows the time), "has_film",
 ///    "seconds", "fps", "frames", "frame", "keyframes": [{"at", "camera", "parts"}], "keyframe"
-///    (the one that the frame is), "turns", "formats" (in which films are saved here)}, "presets":
+///    (the one that the frame is), "moves_data" (whether the time moves), "by_steps" (whether each
+///    step is shown equally long), "turns", "formats" (in which films are saved here)}, "presets":
 ///    [...], "sides": [...], "anatomical", "can_undo", "can_redo"}
 Json scene_json(const SceneState& state, const std::vector<FileChoices>& choices);
 

@@ -105,7 +105,7 @@ SceneState::SceneState(SceneDescription description, Scene scene, ParallelFor pa
       parallel_(std::move(parallel)),
       times_(take_times(description_)) {
   for (LayerDescription& layer : description_.layers) use_matrices(layer);
-  keyed_ = keyed_parts(with_time());
+  keyed_ = with_time();
 }
 
 void SceneState::set_camera(const Camera& camera) {
@@ -243,7 +243,7 @@ void SceneState::set_source(std::size_t layer, const std::function<void(LayerDes
   next.redone_by_.clear();
   next.last_gesture_ = no_gesture;
   next.film_.reset();
-  next.keyed_ = keyed_parts(next.with_time());
+  next.keyed_ = next.with_time();
   *this = std::move(next);
 }
 

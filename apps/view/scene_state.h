@@ -120,8 +120,7 @@ class SceneState {
  private:
   static constexpr int no_gesture = -1;
   struct Step {
-    SceneDescription description;
-    Json keyed;
+    SceneDescription description, keyed;
   };
 
   /// Makes the scene of another description, with the data of this one and new looks of some
@@ -147,6 +146,9 @@ class SceneState {
   void set_film(std::optional<Animation> film);
   /// Returns whether the data are shown at another time than a film that moves them evenly says.
   bool has_chosen_time(const Animation& film) const;
+  /// Returns the film that a keyframe is added to, in which what moved without keyframes goes on:
+  /// steps of time stay until a time is chosen, and a turntable becomes keyframes.
+  Animation film_with_motion() const;
   /// Shows the frame of the timeline's moment, or the nearest one that the film has.
   void show_film();
   void clamp_frame();
@@ -160,7 +162,7 @@ class SceneState {
   bool length_is_set_ = false;        ///< True once the user chose a length
   int frame_ = 0;
   std::optional<Camera> turntable_camera_;  ///< Camera of a turntable's start, once turned
-  Json keyed_;                              ///< keyed_parts() of the last keyframe
+  SceneDescription keyed_;                  ///< whose keyed_parts() are those of the last keyframe
   std::vector<Step> undone_by_, redone_by_;
   int last_gesture_ = -1;
   std::filesystem::path temporary_;  ///< empty: there is none

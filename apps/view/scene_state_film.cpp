@@ -123,7 +123,7 @@ void SceneState::show_frame(int frame) {
   if (animation.turntable) turntable_camera_ = still;
   frame_ = frame;
   // What was changed and is in no keyframe was seen to be so in the whole film.
-  if (goes_on) keyed_ = keyed_parts(with_time());
+  if (goes_on) keyed_ = with_time();
 }
 
 bool SceneState::has_chosen_time(const Animation& film) const {
@@ -132,21 +132,26 @@ bool SceneState::has_chosen_time(const Animation& film) const {
   return shown && *shown != *description_.time;
 }
 
-void SceneState::set_keyframe(std::optional<std::size_t> keyframe) {
+Animation SceneState::film_with_motion() const {
   Animation film = film_length();
-  const auto there = keyframe ? keyframe : keyframe_at(keyframes_of(film), frame_, film.fps);
-  const double at = there ? moment_of(film, *there) : std::min(frame_ / film.fps, film.seconds);
-  if (has_chosen_time(film)) {
-    if (film.by_steps) {
-      throw Error(
-          "time: the film shows all steps evenly, whatever time is chosen; remove the film to put "
-          "times into keyframes");
-    }
-    film = with_time_track(std::move(film));
+  if (!description_.animation) {
+    // Without keyframes it shows each step. A time that was chosen is held instead.
+    film.by_steps = times_.all().size() > 1 && time() == times_.all().front();
+  } else if (has_chosen_time(film)) {
+    const Film made = make_film(film);
+    film = with_time_track(std::move(film), [&](int frame) { return *made.time(frame); });
   }
-  film = with_keyframe(std::move(film), at, with_time(), keyed_);
-  set_film(std::move(film));
-  keyed_ = keyed_parts(with_time());
+  if (film.turntable) film = with_turntable_keyframes(std::move(film), *film_base().camera);
+  return film;
+}
+
+void SceneState::set_keyframe(std::optional<std::size_t> keyframe) {
+  const Animation& length = film_length();
+  const auto there = keyframe ? keyframe : keyframe_at(keyframes_of(length), frame_, length.fps);
+  const double at =
+      there ? moment_of(length, *there) : std::min(frame_ / length.fps, length.seconds);
+  set_film(with_keyframe(film_with_motion(), at, with_time(), keyed_parts(keyed_)));
+  keyed_ = with_time();
 }
 
 void SceneState::move_keyframe(std::size_t keyframe, int frame) {
@@ -198,7 +203,7 @@ void SceneState::remove_film() {
 void SceneState::set_film(std::optional<Animation> film) {
   std::shared_ptr<const Film> made;
   if (film) {
-    // The parser of scenes says what is wrong, and all frames are made once.
+    // The parser of scenes says what is wrong.
     film = parse_animation(animation_to_json(*film), "film");
     made = std::make_shared<const Film>(make_film(*film));
   }

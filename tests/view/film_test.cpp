@@ -31,8 +31,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A .vti of 4 x 4 x 4 points at the times 0, 0.5 and 2, with the values 0 to 1, 1 to 2, 2 to 3.
-fs::path file_with_steps() {
+/// A .vti of 4 x 4 x 4 points at three times, with the values 0 to 1, 1 to 2, 2 to 3.
+fs::path file_with_steps(const std::string& times = "0 0.5 2") {
   static const TemporaryFolder folder("steps of a test");
   std::string arrays;
   for (int step = 0; step < 3; ++step) {
@@ -41,10 +41,12 @@ fs::path file_with_steps() {
     for (int i = 0; i < 64; ++i) arrays += std::to_string(step + i / 63.0) + " ";
     arrays += "</DataArray>";
   }
-  const fs::path path = folder.path() / "steps.vti";
+  const fs::path path = folder.path() / (times + ".vti");
   write_text_file(path, R"(<VTKFile type="ImageData"><ImageData WholeExtent="0 3 0 3 0 3" )"
-                        R"(Origin="0 0 0" Spacing="1 1 1" TimeValues="0 0.5 2">)"
-                        R"(<Piece Extent="0 3 0 3 0 3"><PointData Scalars="a">)" +
+                        R"(Origin="0 0 0" Spacing="1 1 1" TimeValues=")" +
+                            times +
+                            "\">"
+                            R"(<Piece Extent="0 3 0 3 0 3"><PointData Scalars="a">)" +
                             arrays + "</PointData></Piece></ImageData></VTKFile>");
   return path;
 }
@@ -180,10 +182,14 @@ fs::path nifti_with_steps() {
   return path;
 }
 
+SceneState state_of_file(const fs::path& file) {
+  ViewedScene viewed = view_input(file.string(), {});
+  return {std::move(viewed.description), std::move(viewed.scene), {}};
+}
+
 TEST(Time, OfFilesThatAreOpenedIsTheFirst) {
   for (const fs::path& file : {nifti_with_steps(), file_with_steps()}) {
-    ViewedScene viewed = view_input(file.string(), {});
-    SceneState state(std::move(viewed.description), std::move(viewed.scene), {});
+    SceneState state = state_of_file(file);
     EXPECT_EQ(state.times().size(), 3U) << file;
     EXPECT_EQ(state.time(), 0) << file;
     const Pixels first = pixels_of(state.scene());
@@ -224,6 +230,7 @@ TEST(Film, ShowsFramesToTheBitAsTheSavedSceneIsAnimated) {
   SceneState state = steps();
   state.set_film_length(2, 4);
   state.set_camera(from(9, 1, 2));
+  state.set_time(0.5);
   state.set_keyframe();
   state.show_frame(6);
   state.set_time(2);
@@ -231,12 +238,12 @@ TEST(Film, ShowsFramesToTheBitAsTheSavedSceneIsAnimated) {
   state.set_keyframe();
   const Json track = Json::parse(animation_to_json(*state.description().animation))["tracks"][0];
   EXPECT_EQ(track["target"], "/time");
-  EXPECT_EQ(track["keys"], Json::parse(R"([{"at": 0.0, "value": 0}, {"at": 1.5, "value": 2}])"));
+  EXPECT_EQ(track["keys"], Json::parse(R"([{"at": 0.0, "value": 0.5}, {"at": 1.5, "value": 2}])"));
   for (const int frame : {3, 0, 5, 7}) {
     state.show_frame(frame);
     EXPECT_EQ(state.frame(), frame);
     EXPECT_EQ(pixels_of(state.scene()), film_pixels(state, frame)) << frame;
-    EXPECT_EQ(state.time(), std::min(2.0, 2.0 * frame / 6)) << frame;
+    EXPECT_EQ(state.time(), std::min(2.0, 0.5 + 1.5 * frame / 6)) << frame;
   }
   EXPECT_EQ(film_pixels(state, 7), film_pixels(state, 6));
   EXPECT_NE(film_pixels(state, 0), film_pixels(state, 6));
@@ -384,12 +391,13 @@ TEST(Film, ChangesShowTheFramesOfTheFilm) {
 TEST(Film, AnUndoneKeyframeLeavesTheTimeThatWasChosen) {
   SceneState state = steps();
   state.set_film_length(2, 4);
+  state.set_time(0.5);
   state.set_keyframe();
   state.show_frame(6);
   state.set_time(2);
   state.set_keyframe();
   state.show_frame(3);
-  EXPECT_EQ(state.time(), 1);
+  EXPECT_EQ(state.time(), 1.25);
   state.undo();
   EXPECT_EQ(state.time(), 2);
   EXPECT_EQ(pixels_of(state.scene()), film_pixels(state, 3));
@@ -410,10 +418,77 @@ TEST(Film, TimesOfAFilmThatMovesEvenlyBecomeKeys) {
   state.show_frame(4);
   EXPECT_EQ(state.time(), 0.5);
   EXPECT_EQ(film_pixels(state, 7), end);
+  // Steps, too: without keyframes they are at the first and the last frame.
   SceneState even = steps(R"(, "animation": {"seconds": 2, "fps": 4, "time": "steps"})");
   even.show_frame(0);
   even.set_time(2);
-  expect_error(error_of([&] { even.set_keyframe(); }), "shows all steps evenly");
+  even.set_keyframe();
+  ASSERT_EQ(even.description().animation->tracks.size(), 1U);
+  even.show_frame(7);
+  even.show_frame(0);
+  EXPECT_EQ(even.time(), 2);
+  even.show_frame(7);
+  EXPECT_EQ(even.time(), 2);
+}
+
+TEST(Film, KeyframesKeepTheStepsOfTime) {
+  SceneState state = steps();
+  state.set_film_length(2, 3);
+  state.show_frame(3);
+  EXPECT_EQ(state.time(), 0);
+  state.set_keyframe();
+  EXPECT_TRUE(state.description().animation->by_steps);
+  EXPECT_EQ(state.time(), 0.5);
+  EXPECT_EQ(pixels_of(state.scene()), film_pixels(state, 3));
+  // A keyframe with another time puts times into all of them.
+  state.show_frame(5);
+  state.set_time(0);
+  state.set_keyframe();
+  const Animation& film = *state.description().animation;
+  EXPECT_FALSE(film.by_steps);
+  ASSERT_EQ(film.tracks.size(), 1U);
+  ASSERT_EQ(film.tracks[0].keys.size(), 2U);
+  EXPECT_EQ(film.tracks[0].keys[0].value, "0.5");
+  EXPECT_EQ(film.tracks[0].keys[1].value, "0");
+  state.undo();
+  EXPECT_TRUE(state.description().animation->by_steps);
+  state.undo();
+  EXPECT_FALSE(state.description().animation);
+  // A time that was chosen before is held.
+  SceneState still = steps();
+  still.set_time(2);
+  still.set_keyframe();
+  EXPECT_FALSE(still.description().animation->moves_data());
+  still.show_frame(100);
+  EXPECT_EQ(still.time(), 2);
+}
+
+TEST(Film, KeyframesKeepTheTurn) {
+  for (const double turns : {1.0, -0.3, 2.25}) {
+    SceneState state = shells();
+    state.set_film_length(2.03, 8);  // 16 frames
+    state.set_camera(from(4, 1, 0.5));
+    state.set_turntable(turns);
+    std::vector<Camera> turned;
+    for (int frame = 0; frame < 16; ++frame) {
+      state.show_frame(frame);
+      turned.push_back(state.scene().camera);
+    }
+    state.show_frame(5);
+    state.set_keyframe();
+    EXPECT_FALSE(state.description().animation->turntable);
+    for (int frame = 0; frame < 16; ++frame) {
+      state.show_frame(frame);
+      const CameraFrame<double> is = make_camera_frame(state.scene().camera, {1, 1});
+      const CameraFrame<double> was =
+          make_camera_frame(turned[static_cast<std::size_t>(frame)], {1, 1});
+      EXPECT_LT(length(is.position - was.position), 1e-4) << turns << " turns, frame " << frame;
+      EXPECT_LT(length(is.up - was.up), 1e-4) << turns << " turns, frame " << frame;
+    }
+  }
+  SceneState many = shells();
+  many.set_turntable(26);
+  expect_error(error_of([&] { many.set_keyframe(); }), "25 turns are the most");
 }
 
 TEST(Film, AKeyframeThatNoFrameShowsIsRenewed) {

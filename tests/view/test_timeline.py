@@ -81,6 +81,8 @@ class TimelineTest(BrowserTest):
         self.number(page, "Frames of the film in a second", 8)
         page.wait_for(lambda: self.timeline(page)["frames"] == 8, "the frames")
         page.press_button("Add keyframe")
+        if with_time:
+            self.move(page, "time", 1)
         self.wait_keyframes(page, [0])
         self.move(page, "moment", 6)
         if with_time:
@@ -128,9 +130,13 @@ class Keyframes(TimelineTest):
         page.press("#undo")
         self.wait_keyframes(page, [0, 0.5])
 
-        # A turntable takes their place.
+        # A turntable takes their place; a keyframe keeps its turn.
         page.wait_exact(page.press_button("Turntable"))
         self.move(page, "moment", 2)
+        page.press_button("Add keyframe")
+        self.wait_keyframes(page, [0, 0.25, 0.5, 0.75, 1])
+        page.press("#undo")
+        page.wait_for(lambda: self.timeline(page)["turns"] == 1, "the turntable")
         self.assertIn("goes around once", page.text("#timeline .hint"))
         scene = self.scene(page)
         self.assertNotIn("cameras", scene["animation"])
@@ -314,11 +320,11 @@ class Films(TimelineTest):
         page = self.open("s.vti", window=(860, 600))
         self.make_keyframes(page, True)
         self.move(page, "moment", 3)
-        self.assertEqual(self.timeline(page)["time"], 1)
+        self.assertEqual(self.timeline(page)["time"], 1.25)
         scene = self.check_saved_scene_is_the_frame(page)
         self.assertEqual(scene["animation"]["tracks"], [
             {"target": "/time", "easing": "linear",
-             "keys": [{"at": 0, "value": 0}, {"at": 0.75, "value": 2}]}])
+             "keys": [{"at": 0, "value": 0.5}, {"at": 0.75, "value": 2}]}])
         self.program("animate", "scene.json", "-o", "f/%d.png")
         self.assertEqual(self.program_picture("f/3.png"), page.picture())
         self.assertNotEqual(self.program_picture("f/6.png"), page.picture())

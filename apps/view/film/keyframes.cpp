@@ -235,13 +235,45 @@ Animation with_length(Animation film, double seconds, double fps) {
   return film;
 }
 
-Animation with_time_track(Animation film) {
-  const auto [first, last] = *film.time;
-  const double end = (frame_count(film) - 1) / film.fps;
-  AnimationTrack track{time_target, Easing::linear, {{0, Json(first).dump()}}};
-  if (end > 0) track.keys.push_back({end, Json(last).dump()});
+Animation with_time_track(Animation film, const std::function<double(int)>& time_of) {
+  const int last = frame_count(film) - 1;
+  AnimationTrack track{time_target, Easing::linear, {}};
+  const auto put = [&](double at, int frame) {
+    put_key(track.keys, AnimationTrack::Key{at, Json(time_of(frame)).dump()});
+  };
+  const std::vector<Keyframe> keyframes = keyframes_of(film);
+  if (film.by_steps && !keyframes.empty()) {
+    for (const Keyframe& keyframe : keyframes) {
+      put(keyframe.at, std::min(static_cast<int>(std::lround(keyframe.at * film.fps)), last));
+    }
+  } else {
+    put(0, 0);
+    put(last / film.fps, last);
+  }
   film.tracks.push_back(std::move(track));
   film.time.reset();
+  film.by_steps = false;
+  return film;
+}
+
+Animation with_turntable_keyframes(Animation film, const Camera& start) {
+  constexpr double most_turns = 25;
+  const Turntable turntable = *std::exchange(film.turntable, std::nullopt);
+  const double quarters = std::ceil(4 * std::abs(turntable.turns) - 1e-9);
+  if (quarters > 4 * most_turns) {
+    throw Error(fmt::format(
+        "keyframe: the film's turntable turns {} times; with keyframes {} turns are the "
+        "most, as each has four",
+        turntable.turns, most_turns));
+  }
+  // Turntables take equal angles from frame to frame, and a turn ends with the frame after the
+  // last.
+  const double turns_a_second = turntable.turns * film.fps / frame_count(film);
+  const int count = std::max(1, static_cast<int>(quarters));
+  for (int i = 0; i <= count; ++i) {
+    const double at = film.seconds * i / count;
+    film.cameras.push_back({turned_camera(start, 360 * turns_a_second * at, turntable.axis), at});
+  }
   return film;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,7 +35,8 @@ Json keyed_parts(const SceneDescription& scene);
 /// Returns the film with the scene's camera and the values of all tracks at a moment; keys that are
 /// there then are replaced. A part that differs from `last_parts`, which are keyed_parts() of the
 /// keyframe before, gets a track: with the values of `last_parts` at all other keyframes. A
-/// turntable gives way, but tracks that move parts of the camera do not. `scene` has a camera.
+/// turntable gives way (with_turntable_keyframes()), but tracks that move parts of the camera do
+/// not. `scene` has a camera.
 Animation with_keyframe(Animation film, double at, const SceneDescription& scene,
                         const Json& last_parts);
 /// Returns the film with a keyframe at another moment. Throws Error if there is no such keyframe,
@@ -45,9 +47,13 @@ Animation without_keyframe(Animation film, std::size_t keyframe);
 /// Returns the film with another length, its keys at the same parts of it.
 Animation with_length(Animation film, double seconds, double fps);
 
-/// Returns the film with a track of "/time" in the place of its `time`: the same at its first and
-/// its last frame, and between them.
-Animation with_time_track(Animation film);
+/// Returns the film with a track of "/time" in the place of its `time` or its steps. The track
+/// holds the film's times at the first and the last frame; of steps at the keyframes, if there are
+/// any. `time_of` returns the time of a frame.
+Animation with_time_track(Animation film, const std::function<double(int)>& time_of);
+/// Returns the film with cameras at every quarter of its turntable, which make the same turn.
+/// `start` is the camera of the first frame. Throws Error for more than 25 turns.
+Animation with_turntable_keyframes(Animation film, const Camera& start);
 
 /// Returns whether tracks move the camera, or parts of it.
 bool has_camera_tracks(const Animation& film);

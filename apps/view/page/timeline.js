@@ -248,7 +248,7 @@ export class Timeline {
     if (this.complaint) return this.complaint;
     if (now.turns !== null) {
       return `The camera goes around ${now.turns === 1 ? 'once' : `${now.turns} times`}. A camera ` +
-        'that you move is its new start.';
+        'that you move is its new start. A keyframe makes keyframes of the turn.';
     }
     if (now.keyframes.length === 0) {
       return now.has_film ? 'The film moves the data alone.'
@@ -261,7 +261,15 @@ export class Timeline {
     }
     const {at, camera, parts} = now.keyframes[chosen];
     return `Keyframe ${chosen + 1} of ${now.keyframes.length}, at ${shortNumber(at)} s: ` +
-      `${partNames({camera, parts})}. Arrow keys ` +
-      'or a drag move its mark.';
+      `${partNames({camera, parts})}. Arrow keys or a drag move its mark.${this.motionText()}`;
+  }
+
+  /** What one keyframe alone leaves of the motion that a film without keyframes has. */
+  motionText() {
+    const {keyframes, times, by_steps: bySteps, moves_data: movesData} = this.now;
+    if (bySteps) return ' The film still shows each step of time, until a keyframe has another one.';
+    if (keyframes.length !== 1 || movesData) return '';
+    return times.length > 1 ? ' Nothing moves until another one is added: the time is held.'
+      : ' Nothing moves until another one is added: the film does not go around any more.';
   }
 }
