@@ -42,6 +42,10 @@ class _Frames:
     def __iter__(self) -> Iterator[Scene]:
         return (scene for scene, _ in self.stamped())
 
+    def check(self) -> None:
+        """Makes each scene's description once. Raises Error where one cannot be made."""
+        self._scenes.check()
+
     def stamped(self) -> Iterator[tuple[Scene, str]]:
         """Each scene with what it is made from, empty for arrays."""
         return (self._scenes.frame(index) for index in range(len(self)))
@@ -60,7 +64,8 @@ def frames(scene: Scene, animation: Optional[dict] = None) -> _Frames:
     Data of files with steps move in time if the animation has a "time", whatever step they were
     read at. What does not change from frame to frame is kept.
 
-    Raises Error if the animation is not valid, or names something that the scene has not.
+    Raises Error if the animation is not valid, or names something that the scene has not. A frame
+    whose values between two keys make no scene raises it when it is asked for.
     """
     return _Frames(scene, animation)
 
@@ -73,6 +78,7 @@ def _stamped(given: Any, animation: Optional[dict]) -> tuple[Iterator, Optional[
         count = len(given) if hasattr(given, "__len__") else None
         return ((each, "") for each in given), count, _FPS
     made = frames(given, animation)
+    made.check()
     chosen = given.animation if animation is None else animation
     return made.stamped(), len(made), float((chosen or {}).get("fps", _FPS))
 

@@ -22,6 +22,14 @@ void forget_times(SceneDescription& scene) {
   }
 }
 
+/// Returns whether Ctrl-C was pressed, of which Python then keeps the exception. Needs no lock of
+/// Python.
+bool is_interrupted() {
+  wait_for_the_end_if_it_has_come();
+  const py::gil_scoped_acquire acquired;
+  return PyErr_CheckSignals() != 0;
+}
+
 /// The scenes of a film, for one thread at a time.
 class FilmScenes {
  public:
@@ -42,6 +50,16 @@ class FilmScenes {
   }
 
   int frames() const { return film_->frames(); }
+
+  /// Checks every frame. Ctrl-C ends it.
+  void check() const {
+    bool is_done = false;
+    {
+      const ReleasedLock released;
+      is_done = film_->check(is_interrupted);
+    }
+    if (!is_done && PyErr_Occurred() != nullptr) throw py::error_already_set();
+  }
 
   /// Returns the scene of a frame, and as text what it is made from; none for arrays.
   py::tuple frame(int index) {
@@ -81,6 +99,7 @@ void bind_films(py::module_& module) {
       .def(py::init<const py::object&, const std::string&>(), py::arg("scene"),
            py::arg("animation"))
       .def("__len__", &FilmScenes::frames)
+      .def("check", &FilmScenes::check)
       .def("frame", &FilmScenes::frame, py::arg("index"));
   py::class_<FilmFiles>(module, "_FilmFiles")
       .def(py::init<std::filesystem::path>(), py::arg("path"))
@@ -102,11 +121,7 @@ void bind_films(py::module_& module) {
             {
               // Ctrl-C ends FFmpeg.
               const ReleasedLock released;
-              is_made = files.finish(frames, fps, keeps_pictures, [] {
-                wait_for_the_end_if_it_has_come();
-                const py::gil_scoped_acquire acquired;
-                return PyErr_CheckSignals() != 0;
-              });
+              is_made = files.finish(frames, fps, keeps_pictures, is_interrupted);
             }
             if (!is_made && PyErr_Occurred() != nullptr) throw py::error_already_set();
           },

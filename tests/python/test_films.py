@@ -144,6 +144,50 @@ def test_an_interrupt_ends_ffmpeg(tmp_path, monkeypatch):
     assert not (tmp_path / "o.webm").exists()
 
 
+def moving(seconds, last):
+    """A film of 100 frames a second, whose clip's normal has no length in its frame 26 alone."""
+    def clip(x):
+        return [{"plane": {"point": [0, 0, 0], "normal": [x, 0, 0]}}]
+    return {"seconds": seconds, "fps": 100, "tracks": [
+        {"target": "/clip", "keys": [{"at": 0, "value": clip(1)}, {"at": 1, "value": clip(last)}]}]}
+
+
+def test_frames_of_a_long_film_are_made_when_they_are_asked_for(tmp_path):
+    scene = scene_of(pellucid.builtin_field("shells", 8))
+    begin = time.monotonic()
+    made = pellucid.frames(scene, moving(10_000, 5))
+    assert len(made) == 1_000_000
+    assert made[999_999].clips[0].normal[0] > 0
+    assert time.monotonic() - begin < 5
+    # What is wrong is found when it is asked for, or before a film is rendered.
+    made = pellucid.frames(scene, moving(1, -3))
+    with pytest.raises(Error, match="frame 26"):
+        made[25]
+    with pytest.raises(Error, match="frame 26"):
+        pellucid.animate(scene, tmp_path / "f" / "%d.png", moving(1, -3))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_interrupt_ends_the_check_of_a_long_film(tmp_path):
+    def interrupt(signal_number, frame):
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    animation = moving(10_000, 5)
+    animation["tracks"][0]["keys"][1]["at"] = 10_000
+    begin = time.monotonic()
+    try:
+        signal.alarm(2)
+        with pytest.raises(KeyboardInterrupt):
+            pellucid.animate(scene_of(pellucid.builtin_field("shells", 8)), tmp_path / "%d.png",
+                             animation)
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+    assert time.monotonic() - begin < 10
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_what_is_no_film(tmp_path):
     scene = scene_of(array())
     with pytest.raises(Error, match="cannot be a film"):

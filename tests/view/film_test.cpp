@@ -491,6 +491,38 @@ TEST(Film, KeyframesKeepTheTurn) {
   expect_error(error_of([&] { many.set_keyframe(); }), "25 turns are the most");
 }
 
+TEST(Film, LongOnesAreEditedAtOnce) {
+  SceneState state = shells();
+  state.set_film_length(86400, 11);
+  state.set_keyframe();
+  state.show_frame(900'000);
+  state.edit({0, "isosurfaces", Json::parse(R"([{"value": 0.8}])"), 1});
+  const auto start = std::chrono::steady_clock::now();
+  state.set_keyframe();
+  state.move_keyframe(1, 800'000);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  EXPECT_LT(taken.count(), 2);
+  EXPECT_EQ(state.description().animation->tracks.size(), 1U);
+}
+
+TEST(Film, FramesBetweenKeysAreCheckedWhenTheyAreMade) {
+  SceneDescription scene = shells().description();
+  // Its normal has no length in frame 25 alone.
+  scene.animation = parse_animation(R"({"seconds": 1, "fps": 100, "tracks": [{"target": "/clip",
+      "keys": [{"at": 0, "value": [{"plane": {"point": [0, 0, 0], "normal": [1, 0, 0]}}]},
+               {"at": 1, "value": [{"plane": {"point": [0, 0, 0], "normal": [-3, 0, 0]}}]}]}]})",
+                                    "test");
+  const Film film(scene, scene, *scene.animation, SceneTimes(scene));
+  EXPECT_EQ(film.frames(), 100);
+  film.description(24);
+  expect_error(error_of([&] { film.description(25); }), "frame 26");
+  expect_error(error_of([&] { film.check(); }), "frame 26");
+  EXPECT_FALSE(film.check([] { return true; }));
+  // What fails everywhere fails at once.
+  scene.animation->tracks[0] = {"/layers/0/field/points", Easing::linear, {{0, "8"}, {1, "9"}}};
+  expect_error(error_of([&] { Film(scene, scene, *scene.animation, SceneTimes(scene)); }), "frame");
+}
+
 TEST(Film, AKeyframeThatNoFrameShowsIsRenewed) {
   SceneState state = shells();
   state.set_film_length(1, 8);

@@ -150,6 +150,8 @@ std::string FilmRun::options_text() const {
 
 void FilmRun::render_all() {
   const InterruptGuard guard;
+  // What fails, fails before hours are spent on the frames in front of it.
+  if (!film_->check(InterruptGuard::interrupted)) InterruptGuard::check();
   ProgressLine progress(!arguments_.scene.quiet);
   const bool is_exr = files_.picture(0).extension() == ".exr";
   RenderOptions options;

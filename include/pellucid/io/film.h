@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -58,20 +59,26 @@ class Film {
   /// Takes the scene as its author wrote it, into which the tracks point, and `complete`: the same
   /// after complete_description(), so that what was chosen from the data stays the same in all
   /// frames; where a track changes a part of it, such as a layer's transfer function, all of this
-  /// part is as written. Makes the description of every frame once, to check it. Throws Error,
-  /// which names the track and its frame.
+  /// part is as written. Frames are made when they are asked for: what takes long for a long film
+  /// is check(). Here the scenes at all keys are checked, and those of a few frames. Throws Error,
+  /// which names the track or the frame.
   Film(const SceneDescription& written, const SceneDescription& complete,
        const Animation& animation, SceneTimes times);
   ~Film();
   Film(Film&&) noexcept;
   Film& operator=(Film&&) noexcept;
 
+  /// Makes every frame once, to check it. Throws Error, which names the frame. Returns false where
+  /// `ended`, which is asked every few frames if there is one, returns true.
+  bool check(const std::function<bool()>& ended = {}) const;
+
   int frames() const noexcept { return frames_; }
   /// Returns the moment of a frame, counted from 0, in seconds of the film.
   double seconds(int frame) const noexcept { return frame / animation_.fps; }
   /// Returns the time of the data in a frame; none: it does not change.
   std::optional<double> time(int frame) const;
-  /// Returns the scene of a frame. It leaves nothing open but what tracks do.
+  /// Returns the scene of a frame. It leaves nothing open but what tracks do. Throws Error where
+  /// values between two keys make no scene.
   SceneDescription description(int frame) const;
 
  private:

@@ -2,6 +2,7 @@
 #include "pellucid/io/film.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
@@ -160,12 +161,31 @@ struct Film::Document {
   std::vector<MovingPart> parts;
   std::optional<MovingPart> time;  ///< times of the data; none: no track has them
 
-  SceneDescription scene_at(double seconds, const std::string& name) const {
+  /// Returns the values of all parts at a moment.
+  std::vector<json> values_at(double seconds) const {
+    std::vector<json> values;
+    for (const MovingPart& part : parts) values.push_back(part.at(seconds));
+    return values;
+  }
+  SceneDescription scene_of(std::vector<json> values, const std::string& name) const {
     json scene = base;
-    for (const MovingPart& part : parts) put_value(scene, part.tokens, part.at(seconds));
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      put_value(scene, parts[i].tokens, std::move(values[i]));
+    }
     return parse_scene(scene.dump(), name);
   }
+  SceneDescription scene_at(double seconds, const std::string& name) const {
+    return scene_of(values_at(seconds), name);
+  }
 };
+
+namespace {
+
+std::string name_of(int frame) {
+  return "animation, frame " + std::to_string(frame + 1);
+}
+
+}  // namespace
 
 Film::Film(const SceneDescription& written, const SceneDescription& complete,
            const Animation& animation, SceneTimes times)
@@ -204,13 +224,32 @@ Film::Film(const SceneDescription& written, const SceneDescription& complete,
   if (animation.moves_data() && times_.all().empty()) {
     throw Error("animation: \"time\" moves, but no data of the scene have steps");
   }
-  for (int frame = 0; frame < frames_; ++frame) description(frame);
-  // The last keys may lie behind the last frame.
+  // Most of what cannot be interpolated fails at once, as a whole number does.
+  constexpr int most_checked = 8;
+  const int checked = document_->parts.empty() ? 1 : std::min(frames_, most_checked);
+  for (int i = 0; i < checked; ++i) {
+    description(checked == 1 ? 0
+                             : static_cast<int>(std::int64_t{i} * (frames_ - 1) / (checked - 1)));
+  }
   for (const AnimationTrack& track : animation.tracks) {
     for (const AnimationTrack::Key& key : track.keys) {
       document_->scene_at(key.at, "animation, at " + json(key.at).dump() + " s");
     }
   }
+}
+
+bool Film::check(const std::function<bool()>& ended) const {
+  if (document_->parts.empty()) return true;
+  constexpr int asked_every = 16;
+  std::vector<json> last;
+  for (int frame = 0; frame < frames_; ++frame) {
+    if (ended && frame % asked_every == 0 && ended()) return false;
+    std::vector<json> values = document_->values_at(seconds(frame));
+    if (values == last) continue;
+    last = values;
+    document_->scene_of(std::move(values), name_of(frame));
+  }
+  return true;
 }
 
 Film::~Film() = default;
@@ -230,8 +269,7 @@ std::optional<double> Film::time(int frame) const {
 }
 
 SceneDescription Film::description(int frame) const {
-  SceneDescription made =
-      document_->scene_at(seconds(frame), "animation, frame " + std::to_string(frame + 1));
+  SceneDescription made = document_->scene_at(seconds(frame), name_of(frame));
   if (path_) {
     made.camera = path_->at(seconds(frame));
   } else if (animation_.turntable && made.camera) {
