@@ -106,7 +106,8 @@ def animate(scene: Union[Scene, Iterable[Any]], path: Union[str, os.PathLike],
     interrupted goes on; those of arrays are made anew. Each picture is within the tolerance of its
     scene; a video is encoded with a loss.
 
-    Raises Error if the path is no film, ffmpeg is not there, or a scene is not valid.
+    Raises Error if the path is no film, ffmpeg is not there or takes no such size, or a scene is
+    not valid.
     """
     if fps is not None and not (isinstance(fps, (int, float)) and 0 < fps <= 1000):
         raise Error(f"fps: expected a number above 0, up to 1000, got {fps!r:.60}")
@@ -119,6 +120,8 @@ def animate(scene: Union[Scene, Iterable[Any]], path: Union[str, os.PathLike],
         if files.is_video and own != (size or own):
             raise Error(f"animate: frame {index + 1} has {own[0]} x {own[1]} pixels, but those "
                         f"before it have {size[0]} x {size[1]}; give all of them one size")
+        if size is None:
+            files.check_size(*own)
         size = own
         if not made_from or not files.has(index, made_from):
             image = each if isinstance(each, Image) else renderer.render(each)

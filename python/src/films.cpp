@@ -105,6 +105,13 @@ void bind_films(py::module_& module) {
       .def(py::init<std::filesystem::path>(), py::arg("path"))
       .def_property_readonly("is_video", &FilmFiles::is_video)
       .def("picture", &FilmFiles::picture, py::arg("frame"))
+      .def(
+          "check_size",
+          [](const FilmFiles& files, int width, int height) {
+            const ReleasedLock released;
+            files.check_size({width, height});
+          },
+          py::arg("width"), py::arg("height"))
       .def("has", &FilmFiles::has, py::arg("frame"), py::arg("made_from"))
       .def(
           "write",

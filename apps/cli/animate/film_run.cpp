@@ -150,7 +150,8 @@ std::string FilmRun::options_text() const {
 
 void FilmRun::render_all() {
   const InterruptGuard guard;
-  // What fails, fails before hours are spent on the frames in front of it.
+  // Errors come before hours are spent on the frames in front of them.
+  files_.check_size(prepared_.scene.size);
   if (!film_->check(InterruptGuard::interrupted)) InterruptGuard::check();
   ProgressLine progress(!arguments_.scene.quiet);
   const bool is_exr = files_.picture(0).extension() == ".exr";

@@ -68,6 +68,7 @@ fs::path make_file(const Work& work, const fs::path& folder,
   const bool is_zip = work.wanted.format == "zip";
   const fs::path made = folder / ("film." + work.wanted.format);
   const FilmFiles files(is_zip ? folder / "film" / "%04d.png" : made);
+  files.check_size({work.wanted.width, work.wanted.height});
   if (!work.film->check(cancelled)) throw Cancelled();
   RenderOptions options;
   options.machine.threads = work.threads;

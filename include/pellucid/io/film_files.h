@@ -8,6 +8,7 @@
 
 #include "pellucid/scene/background.h"
 #include "pellucid/scene/image.h"
+#include "pellucid/scene/scene.h"
 
 namespace pellucid {
 
@@ -25,6 +26,8 @@ class FilmFiles {
   explicit FilmFiles(std::filesystem::path path);
 
   bool is_video() const noexcept { return !folder_.empty(); }
+  /// Throws Error if FFmpeg cannot encode a video of this size. Does nothing if no video is wanted.
+  void check_size(ImageSize size) const;
   /// Returns the path of a picture, counted from 0.
   std::filesystem::path picture(int frame) const;
 

@@ -2,8 +2,10 @@
 #include "pellucid/io/film_files.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -25,6 +27,19 @@ std::optional<NamePattern> frame_pattern(const std::string& name) {
   if (!pattern || std::ranges::count(name, '%') != 1) return std::nullopt;
   const bool is_plain = pattern->letter == 'd' && !pattern->plus && pattern->width < 10;
   return is_plain && pattern->zeros == (pattern->width > 0) ? pattern : std::nullopt;
+}
+
+/// Returns the size that a .png states in its first chunk.
+ImageSize png_size(const std::filesystem::path& path) {
+  std::array<unsigned char, 24> head{};
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(reinterpret_cast<char*>(head.data()), std::ssize(head))) {
+    throw Error(path.string() + ": the picture of a frame is not there, or is damaged");
+  }
+  const auto number = [&](std::size_t at) {
+    return head[at] << 24 | head[at + 1] << 16 | head[at + 2] << 8 | head[at + 3];
+  };
+  return {number(16), number(20)};
 }
 
 }  // namespace
@@ -64,6 +79,10 @@ FilmFiles::FilmFiles(std::filesystem::path path) : path_(std::move(path)) {
   check_writable(missing.empty() ? picture(0) : missing);
 }
 
+void FilmFiles::check_size(ImageSize size) const {
+  if (is_video()) check_video(path_, size);
+}
+
 std::filesystem::path FilmFiles::picture(int frame) const {
   std::string number = std::to_string(frame);
   const auto digits = static_cast<std::size_t>(digits_);
@@ -101,7 +120,7 @@ void FilmFiles::write(int frame, const Image& image, const std::string& made_fro
 bool FilmFiles::finish(int frames, double fps, bool keeps_pictures,
                        const std::function<bool()>& ended) const {
   if (!is_video()) return true;
-  if (!make_video(folder_, digits_, frames, fps, path_, ended)) return false;
+  if (!make_video(folder_, digits_, frames, fps, png_size(picture(0)), path_, ended)) return false;
   if (keeps_pictures) return true;
   std::error_code ignored;  // pictures that stay do no harm
   for (int frame = 0; frame < frames; ++frame) std::filesystem::remove(picture(frame), ignored);

@@ -94,10 +94,33 @@ Outcome run_ffmpeg(std::vector<std::string> arguments, const std::filesystem::pa
   return outcome;
 }
 
-/// Returns the first line of what it said.
+/// Returns the first line of what it said, without the part of FFmpeg that said it: "[libx264 @
+/// 0x55fb] ".
 std::string first_line(const Outcome& outcome) {
-  const std::string line = outcome.said.substr(0, outcome.said.find('\n'));
+  std::string line = outcome.said.substr(0, outcome.said.find('\n'));
+  const std::size_t end = line.find("] ");
+  if (line.starts_with('[') && end != line.npos) line.erase(0, end + 2);
   return line.empty() ? "it gave no reason" : printable(line);
+}
+
+std::string size_text(ImageSize size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+/// Returns the size of a video's frames: encoders take even ones.
+ImageSize even(ImageSize size) {
+  return {size.width + size.width % 2, size.height + size.height % 2};
+}
+
+/// Returns the filter that gives pictures of a size even ones. It repeats the last row or column,
+/// which goes unseen, unlike a black one.
+std::string filling(ImageSize size) {
+  const ImageSize whole = even(size);
+  const int right = whole.width - size.width, bottom = whole.height - size.height;
+  if (right == 0 && bottom == 0) return "";
+  return "format=gbrp,pad=" + std::to_string(whole.width) + ":" + std::to_string(whole.height) +
+         ",fillborders=right=" + std::to_string(right) + ":bottom=" + std::to_string(bottom) +
+         ":mode=smear,";
 }
 
 /// Returns how a video of this name is encoded, its container last.
@@ -114,8 +137,11 @@ bool is_video_extension(const std::string& extension) {
   return extension == ".webm" || extension == ".mp4";
 }
 
-void check_video(const std::filesystem::path& path) {
-  std::vector<std::string> arguments{"-f", "lavfi", "-i", "color=size=64x64:duration=0.1"};
+void check_video(const std::filesystem::path& path, std::optional<ImageSize> size) {
+  const std::string tried = size_text(even(size.value_or(ImageSize{64, 64})));
+  std::vector<std::string> arguments{
+      "-f",        "lavfi", "-i",  "color=size=" + tried + ":duration=0.1",
+      "-frames:v", "1",     "-vf", "format=yuv420p"};
   const std::vector<std::string> encoding = encoding_of(path);
   arguments.insert(arguments.end(), encoding.begin(), encoding.end() - 2);
   arguments.insert(arguments.end(), {"-f", "null", "-"});
@@ -128,12 +154,15 @@ void check_video(const std::filesystem::path& path) {
                 otherwise);
   }
   if (outcome.status != 0) {
-    throw Error(path.string() + ": ffmpeg cannot encode it: " + first_line(outcome) + otherwise);
+    throw Error(path.string() + ": ffmpeg cannot encode it" +
+                (size ? " with " + size_text(*size) + " pixels: " : ": ") + first_line(outcome) +
+                otherwise);
   }
 }
 
 bool make_video(const std::filesystem::path& folder, int digits, int frames, double fps,
-                const std::filesystem::path& path, const std::function<bool()>& ended) {
+                ImageSize size, const std::filesystem::path& path,
+                const std::function<bool()>& ended) {
   AtomicFile file(path);
   const std::string rate = std::to_string(fps);
   // The signals of the pictures are sRGB in full range; players assume BT.709 in limited range.
@@ -150,8 +179,9 @@ bool make_video(const std::filesystem::path& folder, int digits, int frames, dou
       "-frames:v",
       std::to_string(frames),
       "-vf",
-      "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,"
-      "pad=ceil(iw/2)*2:ceil(ih/2)*2,format=yuv420p",
+      filling(size) +
+          "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int,"
+          "format=yuv420p",
       "-color_primaries",
       "bt709",
       "-color_trc",
