@@ -106,12 +106,13 @@ def animate(scene: Union[Scene, Iterable[Any]], path: Union[str, os.PathLike],
     interrupted goes on; those of arrays are made anew. Each picture is within the tolerance of its
     scene; a video is encoded with a loss.
 
-    Raises Error if the path is no film, ffmpeg is not there or takes no such size, or a scene is
-    not valid.
+    Raises Error if the path is no film, ffmpeg is not there or takes no such size, another call
+    makes the same video now, or a scene is not valid.
     """
     if fps is not None and not (isinstance(fps, (int, float)) and 0 < fps <= 1000):
         raise Error(f"fps: expected a number above 0, up to 1000, got {fps!r:.60}")
     files = _pellucid._FilmFiles(os.fspath(path))
+    files.hold()
     made, count, own_fps = _stamped(scene, animation)
     renderer = Renderer(threads)
     index, size = 0, None

@@ -112,6 +112,7 @@ void bind_films(py::module_& module) {
             files.check_size({width, height});
           },
           py::arg("width"), py::arg("height"))
+      .def("hold", [](FilmFiles& files) { files.hold(FilmFiles::Holder::alone); })
       .def("has", &FilmFiles::has, py::arg("frame"), py::arg("made_from"))
       .def(
           "write",

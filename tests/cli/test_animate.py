@@ -322,6 +322,50 @@ class Animate(ProgramTest):
         self.assertEqual(self.files(), [])
 
     @unittest.skipUnless(FFMPEG, "ffmpeg is not installed: no video is made")
+    def test_one_video_at_a_time(self):
+        film = ("animate", "builtin:shells:16", "-o", "o.webm", "--size", "600", "--frames", "500",
+                "--tolerance", "1e-6", "-q")
+        first = subprocess.Popen([PROGRAM, *film], cwd=self.path(""), stderr=subprocess.DEVNULL)
+        try:
+            deadline = time.monotonic() + 60
+            while not os.path.exists(self.path("o.webm.frames")):
+                self.assertLess(time.monotonic(), deadline)
+                time.sleep(0.05)
+            for more in ([], ["--part", "1/2"]):
+                second = self.run_program(*film, *more)
+                self.assertEqual(second.returncode, 1, more)
+                self.assertIn(b"another call makes this video now", second.stderr)
+        finally:
+            first.kill()
+            first.wait()
+        # Parts are made beside each other, and a call that was killed holds nothing.
+        short = ("animate", "builtin:shells:16", "-o", "o.webm", "--size", "16", "--frames", "2",
+                 "-q")
+        part = subprocess.Popen([PROGRAM, *film, "--part", "1/2"], cwd=self.path(""),
+                                stderr=subprocess.DEVNULL)
+        try:
+            time.sleep(2)
+            self.assertIsNone(part.poll())
+            self.succeed(*short, "--part", "2/2")
+        finally:
+            part.kill()
+            part.wait()
+        self.succeed(*short)
+        self.assertIn("o.webm", self.files())
+
+    @unittest.skipUnless(FFMPEG, "ffmpeg is not installed: no video is made")
+    def test_a_shorter_film_leaves_no_pictures(self):
+        film = ("animate", "builtin:shells:16", "-o", "o.webm", "--size", "16", "-q")
+        self.succeed(*film, "--frames", "5", "--keep-frames")
+        self.write("o.webm.frames/000006.png", b"of somebody else")
+        self.succeed(*film, "--frames", "3", "--keep-frames")
+        self.assertEqual(self.frames("o.webm.frames"),
+                         ["000000.png", "000001.png", "000002.png", "000006.png"])
+        os.remove(self.path("o.webm.frames/000006.png"))
+        self.succeed(*film, "--frames", "2")
+        self.assertEqual(self.files(), ["o.webm"])
+
+    @unittest.skipUnless(FFMPEG, "ffmpeg is not installed: no video is made")
     def test_videos(self):
         # One color in all of the picture, which the video keeps but for its own rounding.
         scene = {"layers": [{"field": {"builtin": "constant", "points": 8}, "transfer_function": {

@@ -94,7 +94,9 @@ FilmRun::FilmRun(const AnimateArguments& arguments, FilmShare share)
       share_(share),
       files_(arguments.output),
       parallel_(parallel_for(arguments.scene.threads > 0 ? arguments.scene.threads
-                                                         : default_thread_count())) {}
+                                                         : default_thread_count())) {
+  files_.hold(share.is_all() ? FilmFiles::Holder::alone : FilmFiles::Holder::beside_others);
+}
 
 void FilmRun::load() {
   const RenderArguments& scene = arguments_.scene;

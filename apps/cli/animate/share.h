@@ -9,6 +9,7 @@ namespace pellucid::cli {
 struct FilmShare {
   int first = 0, processes = 1;
 
+  bool is_all() const noexcept { return processes == 1; }
   bool has(int frame) const noexcept { return frame % processes == first; }
   /// Returns how many of so many frames it has.
   int count(int frames) const noexcept { return (frames - first + processes - 1) / processes; }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -28,6 +29,11 @@ class FilmFiles {
   bool is_video() const noexcept { return !folder_.empty(); }
   /// Throws Error if FFmpeg cannot encode a video of this size. Does nothing if no video is wanted.
   void check_size(ImageSize size) const;
+  /// Holds the folder of a video's pictures, which is made, until this is gone: alone, or beside
+  /// others that render parts of the film. An empty folder goes with it. Does nothing if no video
+  /// is wanted. Throws Error if another one holds it.
+  enum class Holder { alone, beside_others };
+  void hold(Holder holder);
   /// Returns the path of a picture, counted from 0.
   std::filesystem::path picture(int frame) const;
 
@@ -38,16 +44,23 @@ class FilmFiles {
   /// Throws Error.
   void write(int frame, const Image& image, const std::string& made_from,
              const std::optional<Background>& background) const;
-  /// Makes the video of so many pictures, and removes them unless `keeps_pictures`. Does nothing if
-  /// no video is wanted. Throws Error with what FFmpeg says. `ended` is asked some twenty times a
-  /// second: where it returns true FFmpeg is ended, no video is left, and false is returned.
+  /// Makes the video of so many pictures, and removes them unless `keeps_pictures`; those of a
+  /// longer film, too, that are left behind them. Does nothing if no video is wanted. Throws Error
+  /// with what FFmpeg says. `ended` is asked some twenty times a second: where it returns true
+  /// FFmpeg is ended, no video is left, and false is returned.
   bool finish(int frames, double fps, bool keeps_pictures,
               const std::function<bool()>& ended = {}) const;
 
  private:
+  class Hold;
+
+  /// Removes pictures of a longer film.
+  void remove_behind(int frames) const;
+
   std::filesystem::path path_, folder_;  ///< folder of a video's pictures; empty: none is wanted
   std::string before_, after_;           ///< the number in the name of a picture
   int digits_ = 6;
+  std::shared_ptr<const Hold> hold_;
 };
 
 /// Returns what says of which data a scene was made: size and time of change of each file.

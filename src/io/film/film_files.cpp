@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pellucid/io/film_files.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -83,6 +90,52 @@ void FilmFiles::check_size(ImageSize size) const {
   if (is_video()) check_video(path_, size);
 }
 
+/// A lock of a folder, which ends with this or with the process.
+class FilmFiles::Hold {
+ public:
+  Hold(std::filesystem::path folder, Holder holder) : folder_(std::move(folder)) {
+    while (true) {
+      std::error_code failure;
+      std::filesystem::create_directory(folder_, failure);
+      if (failure) {
+        throw Error(folder_.string() + ": cannot make the folder: " + failure.message());
+      }
+      file_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+      // Folders of some file systems cannot be held.
+      if (file_ < 0) return;
+      const int how = holder == Holder::alone ? LOCK_EX : LOCK_SH;
+      const bool is_held = flock(file_, how | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+      if (!is_held && is_there()) return;
+      close(file_);
+      if (!is_held) continue;  // Another one has removed it meanwhile.
+      throw Error(folder_.string() +
+                  ": another call makes this video now; wait for its end, or give another name");
+    }
+  }
+  ~Hold() {
+    // Before the lock goes, so that it is empty still.
+    if (file_ < 0 || is_there()) rmdir(folder_.c_str());
+    if (file_ >= 0) close(file_);
+  }
+  Hold(const Hold&) = delete;
+  Hold& operator=(const Hold&) = delete;
+
+ private:
+  bool is_there() const {
+    struct stat held {};
+    struct stat there {};
+    return fstat(file_, &held) == 0 && stat(folder_.c_str(), &there) == 0 &&
+           held.st_ino == there.st_ino && held.st_dev == there.st_dev;
+  }
+
+  std::filesystem::path folder_;
+  int file_ = -1;
+};
+
+void FilmFiles::hold(Holder holder) {
+  if (is_video()) hold_ = std::make_shared<const Hold>(folder_, holder);
+}
+
 std::filesystem::path FilmFiles::picture(int frame) const {
   std::string number = std::to_string(frame);
   const auto digits = static_cast<std::size_t>(digits_);
@@ -121,11 +174,24 @@ bool FilmFiles::finish(int frames, double fps, bool keeps_pictures,
                        const std::function<bool()>& ended) const {
   if (!is_video()) return true;
   if (!make_video(folder_, digits_, frames, fps, png_size(picture(0)), path_, ended)) return false;
-  if (keeps_pictures) return true;
   std::error_code ignored;  // pictures that stay do no harm
+  remove_behind(frames);
+  if (keeps_pictures) return true;
   for (int frame = 0; frame < frames; ++frame) std::filesystem::remove(picture(frame), ignored);
   std::filesystem::remove(folder_, ignored);
   return true;
+}
+
+void FilmFiles::remove_behind(int frames) const {
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_, ignored)) {
+    const std::filesystem::path& path = entry.path();
+    const std::string name = path.filename().string();
+    int number = -1;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+    const bool is_behind = error == std::errc{} && number >= frames && path == picture(number);
+    if (is_behind && picture_text(path, made_from_key)) std::filesystem::remove(path, ignored);
+  }
 }
 
 std::string data_stamp(const SceneDescription& description) {
