@@ -123,6 +123,8 @@ Json timeline_json(const SceneState& state) {
   }
   const auto chosen = keyframe_at(keyframes, state.frame(), film.fps);
   return {{"times", state.times()},
+          {"time_unit", state.times_unit()},
+          {"times_left_out", state.times_left_out()},
           {"time", state.time()},
           {"follows", std::move(follows)},
           {"has_film", state.description().animation.has_value()},

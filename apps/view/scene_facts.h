@@ -30,7 +30,8 @@ Lettering lettering_of(const SceneDescription& description);
 ///   {"type": "scene", "scene": (scene file), "savable", "temporary": (whether its data go with the
 ///    program), "layers": [{"kind", "channels", "range", "ranges" (of each channel), "steps"
 ///    (slice_steps_json()), "components", "arrays", "times"}], "box": {"lower", "upper"},
-///    "timeline": {"times", "time", "follows" (whether each layer follows the time), "has_film",
+///    "timeline": {"times", "time_unit" (text of the file, may be empty), "times_left_out" (how
+///    many no scene can name), "time", "follows" (whether each layer follows the time), "has_film",
 ///    "seconds", "fps", "frames", "frame", "keyframes": [{"at", "camera", "parts"}], "keyframe"
 ///    (the one that the frame is), "moves_data" (whether the time moves), "by_steps" (whether each
 ///    step is shown equally long), "turns", "formats" (in which films are saved here)}, "presets":

@@ -61,6 +61,9 @@ class SceneState {
   // scene_state_film.cpp:
   /// Returns the times of the steps that the scene's time chooses from, ascending; empty: none.
   const std::vector<double>& times() const noexcept { return times_.all(); }
+  /// Returns the unit of these times, and how many are left out (SceneTimes).
+  const std::string& times_unit() const noexcept { return times_.unit(); }
+  std::size_t times_left_out() const noexcept { return times_.left_out(); }
   /// Returns the time of the data; 0 without steps.
   double time() const;
   /// Returns whether the data of a layer, or some of them, follow the scene's time.

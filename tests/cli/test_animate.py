@@ -165,6 +165,12 @@ class Animate(ProgramTest):
             alpha = pixel(self.picture(f"f/{i}.png"), 4, 4)[3] / 255
             self.assertAlmostEqual(alpha, 1 - math.exp(-0.3 * value), delta=0.0045)
 
+    def test_times_that_no_scene_can_name(self):
+        self.write("run.vti", steps([0.0, 0.5, 1e300], [[1], [2], [3]]))
+        told = self.note("animate", "run.vti", "-o", "f/%d.png", "--size", "16")
+        self.assertIn("steps left out: 1, whose times are beyond", told)
+        self.assertEqual(self.frames(), ["0.png", "1.png"])
+
     def test_a_track_of_the_time(self):
         self.write("run.vti", steps(TIMES, [[1], [2], [8], [4]]))
         scene = {"layers": [{"field": {"file": "run.vti"}, "transfer_function": {"points": [

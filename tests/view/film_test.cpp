@@ -198,6 +198,21 @@ TEST(Time, OfFilesThatAreOpenedIsTheFirst) {
   }
 }
 
+TEST(Time, HasTheUnitOfTheFile) {
+  const SceneState medical = state_of_file(nifti_with_steps());
+  const auto timeline = [](const SceneState& state) {
+    return scene_json(state, file_choices(state.description()))["timeline"];
+  };
+  EXPECT_EQ(timeline(medical)["time_unit"], "s");
+  EXPECT_EQ(timeline(steps())["time_unit"], "");
+}
+
+TEST(Time, ThatNoSceneCanNameIsLeftOut) {
+  const SceneState state = state_of_file(file_with_steps("0 0.5 1e300"));
+  EXPECT_EQ(state.times(), (std::vector<double>{0, 0.5}));
+  EXPECT_EQ(state.times_left_out(), 1U);
+}
+
 TEST(Film, KeyframesHoldCameraAndWhatChanged) {
   SceneState state = shells();
   state.set_film_length(2, 4);

@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -80,9 +81,9 @@ class TimelineTest(BrowserTest):
         page.wait_for(lambda: self.timeline(page)["seconds"] == 1, "the length")
         self.number(page, "Frames of the film in a second", 8)
         page.wait_for(lambda: self.timeline(page)["frames"] == 8, "the frames")
-        page.press_button("Add keyframe")
         if with_time:
             self.move(page, "time", 1)
+        page.press_button("Add keyframe")
         self.wait_keyframes(page, [0])
         self.move(page, "moment", 6)
         if with_time:
@@ -132,11 +133,11 @@ class Keyframes(TimelineTest):
 
         # A turntable takes their place; a keyframe keeps its turn.
         page.wait_exact(page.press_button("Turntable"))
-        self.move(page, "moment", 2)
         page.press_button("Add keyframe")
         self.wait_keyframes(page, [0, 0.25, 0.5, 0.75, 1])
         page.press("#undo")
         page.wait_for(lambda: self.timeline(page)["turns"] == 1, "the turntable")
+        self.move(page, "moment", 2)
         self.assertIn("goes around once", page.text("#timeline .hint"))
         scene = self.scene(page)
         self.assertNotIn("cameras", scene["animation"])
@@ -287,6 +288,7 @@ class Films(TimelineTest):
         page = self.open("s.vti", window=(900, 560))
         self.assertFalse(page.run("return document.getElementById('timeline').hidden"))
         self.assertIn("step 1 of 3", page.text("#timeline"))
+        self.assertNotIn("left out", page.text("#timeline"))
         first = page.picture()
         self.move(page, "time", 2)
         self.assertIn("2 · step 3 of 3", page.text("#timeline"))
@@ -315,6 +317,42 @@ class Films(TimelineTest):
         self.assertEqual(self.timeline(page)["time"], 0.5)
         page.wait_for(lambda: 1 <= least() < 2, "slices of the second step")
         self.assertEqual(page.complaints(), [])
+
+    def test_units_and_times_that_no_scene_names(self):
+        with open(self.path("s.vti"), encoding="ascii") as file:
+            text = file.read()
+        with open(self.path("far.vti"), "w", encoding="ascii") as file:
+            file.write(text.replace('TimeValues="0 0.5 2"', 'TimeValues="0 0.5 1e300"'))
+        page = self.open("far.vti", window=(900, 560))
+        self.assertIn("step 1 of 2 (1 left out)", page.text("#timeline"))
+        self.move(page, "time", 1)
+        self.assertEqual(self.timeline(page)["time"], 0.5)
+        self.assertEqual(page.complaints(), [])
+        page.browser.quit()
+        self.viewer.stop()
+        import numpy
+        header = bytearray(352)
+        struct.pack_into("<i", header, 0, 348)
+        struct.pack_into("<8h", header, 40, 4, 8, 8, 8, 3, 1, 1, 1)
+        struct.pack_into("<2h", header, 70, 16, 32)
+        struct.pack_into("<8f", header, 76, 1, 1, 1, 1, 2, 0, 0, 0)
+        struct.pack_into("<f", header, 108, 352)
+        header[123] = 2 | 8  # mm and s
+        header[344:348] = b"n+1\0"
+        with open(self.path("s.nii"), "wb") as file:
+            file.write(header + numpy.linspace(0, 1, 3 * 512, dtype=numpy.float32).tobytes())
+        page = self.open("s.nii", window=(900, 560))
+        self.move(page, "time", 1)
+        self.assertIn("2 s · step 2 of 3", page.text("#timeline"))
+
+    def test_the_first_keyframe_keeps_the_steps(self):
+        page = self.open("s.vti", window=(860, 600))
+        page.wait_exact(page.press("#film"))
+        page.press_button("Add keyframe")
+        self.wait_keyframes(page, [0])
+        self.assertIn("still shows each step of time", page.text("#timeline .hint"))
+        self.move(page, "moment", 119)
+        self.assertEqual(self.timeline(page)["time"], 2)
 
     def test_keyframes_move_the_time(self):
         page = self.open("s.vti", window=(860, 600))

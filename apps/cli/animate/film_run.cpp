@@ -135,6 +135,12 @@ void FilmRun::load() {
   }
   notes_ = prepared_.import_notes;
   if (prepared_.look && !prepared_.look->name.empty()) notes_.push_back(look_line(prepared_));
+  if (times->left_out() > 0) {
+    notes_.push_back(
+        fmt::format("steps left out: {}, whose times are beyond ±1e30, the largest "
+                    "that a scene can name",
+                    times->left_out()));
+  }
   film_.emplace(written, prepared_.description, animation_, *std::move(times));
   loader_.emplace(prepared_.description, prepared_.scene);
 }

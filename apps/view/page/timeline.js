@@ -10,6 +10,11 @@ const stepRate = 12;
 /** Limits of the length of a film and of its frames in a second. */
 const limits = {seconds: {min: 0.001, max: 86400}, fps: {min: 0.001, max: 1000}};
 
+/** A unit of a file without what follows its first word: "hours" of "hours since 2000-01-01". */
+function shortUnit(unit) {
+  return unit.length > 8 ? unit.split(/[ (]/)[0] : unit;
+}
+
 /** The time of the data, and the film with its keyframes. */
 export class Timeline {
   /** @param {import('./main.js').Viewer} viewer */
@@ -70,8 +75,13 @@ export class Timeline {
   }
 
   tellStep(time, step) {
-    this.stepText.value = `${shortNumber(time)} · step ${step + 1} of ${this.now.times.length}`;
-    this.stepSlider.setAttribute('aria-valuetext', this.stepText.value);
+    const {times, time_unit: unit, times_left_out: leftOut} = this.now;
+    const text = (unitText) => [shortNumber(time), unitText].filter(Boolean).join(' ') +
+      ` · step ${step + 1} of ${times.length}`;
+    this.stepText.value = text(shortUnit(unit)) + (leftOut > 0 ? ` (${leftOut} left out)` : '');
+    this.stepText.title = text(unit) + (leftOut === 0 ? '' : `; ${leftOut} more have times beyond ` +
+      '±1e30, which no scene can name');
+    this.stepSlider.setAttribute('aria-valuetext', this.stepText.title);
   }
 
   // --- The film.

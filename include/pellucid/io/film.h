@@ -22,6 +22,10 @@ class SceneTimes {
   /// Returns the times of all data that have no time of their own in the scene, ascending and each
   /// once; empty: none has steps.
   const std::vector<double>& all() const noexcept { return all_; }
+  /// Returns the unit of the times, as files write it; empty: none says one, or they differ.
+  const std::string& unit() const noexcept { return unit_; }
+  /// Returns how many more there are that no scene can name: beyond ±1e30.
+  std::size_t left_out() const noexcept { return left_out_; }
   /// Returns those of one layer likewise.
   std::vector<double> of(std::size_t layer) const;
   /// Has such data read at a moment: at the step that is nearest to it (of two as near the
@@ -34,6 +38,8 @@ class SceneTimes {
  private:
   std::vector<std::vector<std::vector<double>>> times_;  ///< times of each source of each layer
   std::vector<double> all_;
+  std::string unit_;
+  std::size_t left_out_ = 0;
 };
 
 /// Has a scene with a "time" read at it: writes the steps into its sources, and takes the key away.

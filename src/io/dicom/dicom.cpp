@@ -81,11 +81,11 @@ DicomGroup volume_at_time(const DicomFolder& folder, const std::filesystem::path
 
 /// Returns the times of the volumes of a series; none where it has one. Throws Error where several
 /// are no steps.
-std::vector<double> dicom_times(const std::filesystem::path& path, const ReadOptions& options) {
+StepTimes dicom_times(const std::filesystem::path& path, const ReadOptions& options) {
   const DicomFolder folder = scan_dicom_folder(path);
   DicomSteps steps = dicom_steps(folder, path, options.series);
   if (steps.volumes.empty()) choose_dicom_series(folder, path, options.series);
-  return std::move(steps.times);
+  return {std::move(steps.times), std::move(steps.unit)};
 }
 
 /// Opens a series without the files for which reading it threw DamagedDicom.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "axes/time_steps.h"
@@ -7,6 +8,8 @@
 #include "pellucid/io/film.h"
 #include "pellucid/io/time_steps.h"
 #include "pellucid/scene/error.h"
+#include "text/json_document.h"
+#include "text/printable.h"
 
 namespace pellucid {
 namespace {
@@ -51,14 +54,23 @@ bool has_component(const MeshSource&) {
 SceneTimes::SceneTimes(const SceneDescription& description) {
   SceneDescription scene = description;
   times_.resize(scene.layers.size());
+  std::vector<std::string> units;
   for (std::size_t i = 0; i < scene.layers.size(); ++i) {
     visit_timed(scene.layers[i], [&](const auto& source, const auto& options) {
       const bool is_still = options.time || has_component(source);
-      times_[i].push_back(is_still ? std::vector<double>() : source_times(source));
+      StepTimes steps = is_still ? StepTimes() : source_steps(source);
+      if (!steps.times.empty()) units.push_back(std::move(steps.unit));
+      times_[i].push_back(std::move(steps.times));
+      left_out_ += std::erase_if(times_[i].back(), [](double time) {
+        return std::abs(time) > scene_json::largest_number;
+      });
       all_.insert(all_.end(), times_[i].back().begin(), times_[i].back().end());
     });
   }
   all_ = ascending_times(std::move(all_));
+  const bool is_one =
+      std::ranges::all_of(units, [&](const auto& unit) { return unit == units[0]; });
+  if (is_one && !units.empty()) unit_ = printable(units[0]);
 }
 
 std::vector<double> SceneTimes::of(std::size_t layer) const {

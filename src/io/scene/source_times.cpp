@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include "axes/time_steps.h"
 #include "meshes/mesh_format.h"
 #include "pellucid/io/time_steps.h"
@@ -6,13 +8,23 @@
 
 namespace pellucid {
 
-std::vector<double> source_times(const FieldSource& source) {
+StepTimes source_steps(const FieldSource& source) {
   if (!source.builtin.empty()) return {};
-  return ascending_times(volume_times(source.file, source.options));
+  StepTimes steps = volume_times(source.file, source.options);
+  steps.times = ascending_times(std::move(steps.times));
+  return steps;
+}
+
+StepTimes source_steps(const MeshSource& source) {
+  return {ascending_times(mesh_times(source.file, source.options))};
+}
+
+std::vector<double> source_times(const FieldSource& source) {
+  return source_steps(source).times;
 }
 
 std::vector<double> source_times(const MeshSource& source) {
-  return ascending_times(mesh_times(source.file, source.options));
+  return source_steps(source).times;
 }
 
 }  // namespace pellucid

@@ -52,6 +52,7 @@ struct VolumeFile {
   /// colors.
   double largest_color = 0;
   std::vector<double> times;  ///< of its steps, in the order of the file; empty: it has none
+  std::string times_unit;     ///< text of the file: "s"; empty: it says none
   std::optional<int> step;    ///< the component that a time chose
   bool reads_parts = false;   ///< whether `read` reads a part of the grid without the rest
   std::string array;  ///< the one of the file's arrays that this is; empty: they have no names

@@ -89,7 +89,7 @@ std::optional<MomentBetween> moment_of(const std::filesystem::path& path,
   if (!options.time) {
     throw Error(path.string() + ": linear between steps in time needs a time; give one");
   }
-  return moment_between(volume_times(path, options), *options.time);
+  return moment_between(volume_times(path, options).times, *options.time);
 }
 
 /// Returns what `mix` makes of the results of `read` at both steps. Notes are told once, and only
@@ -136,14 +136,16 @@ Volume read_volume(const std::filesystem::path& path, const ReadOptions& options
                   [&](const VolumeFile& file) { return read_chosen(file, options); });
 }
 
-std::vector<double> volume_times(const std::filesystem::path& path, const ReadOptions& options) {
+StepTimes volume_times(const std::filesystem::path& path, const ReadOptions& options) {
   ReadOptions quiet = options;
   quiet.time.reset();
   quiet.part = {};
   quiet.note = {};
   const auto times = find_volume_format(path, quiet).times;
   if (times != nullptr) return with_memory(path, [&] { return times(path, quiet); });
-  return open_and(path, quiet, [](const VolumeFile& file) { return file.times; });
+  return open_and(path, quiet, [](const VolumeFile& file) {
+    return StepTimes{file.times, file.times_unit};
+  });
 }
 
 ColorOutline outline_colors(const std::filesystem::path& path, const ReadOptions& options) {

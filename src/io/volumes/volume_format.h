@@ -8,6 +8,7 @@
 
 #include "components.h"
 #include "pellucid/io/read_volume.h"
+#include "pellucid/io/time_steps.h"
 
 namespace pellucid {
 
@@ -54,8 +55,7 @@ struct VolumeFormat {
                              const ReadOptions& options) = nullptr;
   /// Returns the times of the steps, where opening without a time does not; null: it does. Throws
   /// Error.
-  std::vector<double> (*times)(const std::filesystem::path& path,
-                               const ReadOptions& options) = nullptr;
+  StepTimes (*times)(const std::filesystem::path& path, const ReadOptions& options) = nullptr;
   bool has_header = true;
   bool takes_axes = false;  ///< whether the options say which axes are x, y and z
   bool has_levels = false;  ///< of resolution
@@ -78,7 +78,7 @@ const VolumeFormat& find_volume_format(const std::filesystem::path& path,
 
 /// Returns the times of a file's steps in its own order; empty: it has none. Reads no values.
 /// Throws Error as read_volume() does.
-std::vector<double> volume_times(const std::filesystem::path& path, const ReadOptions& options);
+StepTimes volume_times(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Headerless data, of any name whose dimensions and type are given.
 extern const VolumeFormat raw_format;

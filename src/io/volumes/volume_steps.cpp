@@ -84,6 +84,7 @@ void take_steps(const VolumeSteps& steps, const ReadOptions& options, const std:
   const std::vector<double>& times = steps.times;
   const std::string& name = file.description.name;
   file.times = times;
+  file.times_unit = steps.unit;
   refuse_movie(times.size(), file.description.dimensions[2], options, name);
   if (!options.time) {
     if (options.note && times.size() > 1) {

@@ -89,8 +89,8 @@ ReadValues variable_reader(const ZarrVariable& variable, const ZarrView& view,
 }
 
 /// Takes the step of the nearest time, or tells which times there are. Returns the times.
-std::vector<double> choose_time(const ZarrChoice& choice, const ReadOptions& options,
-                                const std::string& name, ZarrAxes& axes) {
+StepTimes choose_time(const ZarrChoice& choice, const ReadOptions& options, const std::string& name,
+                      ZarrAxes& axes) {
   if (options.time && !axes.time) {
     throw Error(name + ": has no steps in time; leave the time out");
   }
@@ -104,7 +104,7 @@ std::vector<double> choose_time(const ZarrChoice& choice, const ReadOptions& opt
   if (!options.time) {
     if (options.note && times.size() > 1)
       options.note(name + ": holds " + times_note(times, along.units));
-    return times;
+    return {times, along.units};
   }
   if (std::ranges::all_of(times, [](double time) { return std::isnan(time); })) {
     throw Error(name +
@@ -115,7 +115,7 @@ std::vector<double> choose_time(const ZarrChoice& choice, const ReadOptions& opt
   if (options.note) options.note(name + ": " + step_note(times, step, *options.time, along.units));
   axes.view.at[*axes.time] = static_cast<std::int64_t>(step);
   std::erase(axes.view.components, *axes.time);
-  return times;
+  return {times, along.units};
 }
 
 /// Returns the names of an image's channels where they are its components; else none.
@@ -175,7 +175,9 @@ VolumeFile open_zarr(const fs::path& path, const ReadOptions& options) {
   ZarrChoice choice = choose_zarr(path, options);
   ZarrAxes axes = zarr_axes(choice, name, options);
   VolumeFile file;
-  file.times = choose_time(choice, options, name, axes);
+  StepTimes steps = choose_time(choice, options, name, axes);
+  file.times = std::move(steps.times);
+  file.times_unit = std::move(steps.unit);
   if (options.note && !choice.array.note.empty()) options.note(name + ": " + choice.array.note);
   file.description.name = name;
   const std::array<std::int64_t, 3> sides = axes.view.sides(choice.array);
