@@ -203,11 +203,11 @@ class Keyframes(TimelineTest):
         page.click(*page.center("[data-keyframe='2']"))
         page.wait_for(lambda: chosen() == "2", "the one that was clicked")
         self.assertIn("Keyframe 3 of 3, at 1 s", page.text("#timeline"))
-        # The chosen one is in front; another click chooses the one behind it.
+        # The other one stands above or below it.
+        page.click(*page.center("[data-keyframe='1']"))
+        page.wait_for(lambda: chosen() == "1", "the other one")
         page.click(*page.center("[data-keyframe='2']"))
-        page.wait_for(lambda: chosen() == "1", "the one behind it")
-        page.click(*page.center("[data-keyframe='2']"))
-        page.wait_for(lambda: chosen() == "2", "the front one again")
+        page.wait_for(lambda: chosen() == "2", "the first one again")
         page.run("document.querySelector('[data-keyframe=\"1\"]').focus()")
         self.key(page, "Enter", 13)
         page.wait_for(lambda: chosen() == "1", "the other one")
@@ -226,6 +226,41 @@ class Keyframes(TimelineTest):
             self.assertEqual(page.run("return document.querySelector("
                                       "'[aria-label=\"Length of the film in seconds\"]').value"),
                              "1")
+        self.assertEqual(page.complaints(), [])
+
+    def test_marks_beside_each_other(self):
+        page = self.open("builtin:shells:16", window=(390, 844))
+        page.wait_exact(page.press("#film"))
+        page.press_button("Add keyframe")
+        self.wait_keyframes(page, [0])
+        self.assertIn("the film does not go around any more", page.text("#timeline .hint"))
+        moments = [0]
+        for frame in (1, 2, 3, 60):
+            self.move(page, "moment", frame)
+            page.press_button("Add keyframe")
+            moments.append(round(frame / 24, 6))
+            self.wait_keyframes(page, moments)
+        self.assertNotIn("any more", page.text("#timeline .hint"))
+
+        def boxes():
+            return page.run("return [...document.querySelectorAll('.mark')].map((one) =>"
+                            "{const {left, top} = one.getBoundingClientRect();"
+                            "return [left, top]; })")
+        marks = boxes()
+        self.assertEqual(len({round(top) for _, top in marks}), 3)
+        self.assertEqual(round(marks[0][1]), round(marks[4][1]))
+        for i, (left, top) in enumerate(marks[:3]):
+            for other_left, other_top in marks[:i]:
+                self.assertTrue(abs(left - other_left) >= 23 or abs(top - other_top) >= 23)
+        # Four in 6 pixels: the last one lies over another, and each is reached by clicks.
+        reached = set()
+        for i in range(4):
+            for _ in range(2):
+                page.click(*page.center(f"[data-keyframe='{i}']"))
+                time.sleep(0.3)
+                reached.add(page.run("return viewer.line.marks.chosen()"))
+        self.assertEqual(reached, {0, 1, 2, 3})
+        self.assertLessEqual(page.run("return document.documentElement.scrollWidth"), 390)
         self.assertEqual(page.complaints(), [])
 
     def test_playing(self):

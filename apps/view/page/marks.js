@@ -3,6 +3,25 @@ import {button, followDrag, make, shortNumber} from './elements.js';
 
 /** Half of the thumb of a slider, in CSS pixels. */
 const inset = 8;
+/** Edge of a mark, in CSS pixels. */
+const edge = 24;
+/** Rows of marks at most, above each other where marks of one row would overlap. */
+const mostRows = 3;
+
+/**
+ * Returns the row of each place, from 0 at the bottom: the lowest one that has room there. Where
+ * none has, the marks overlap in the row that ends first.
+ * @param {number[]} places ascending, in CSS pixels
+ */
+export function rowsOf(places) {
+  const ends = [];
+  return places.map((place) => {
+    let row = ends.findIndex((end) => place - end >= edge);
+    if (row < 0) row = ends.length < mostRows ? ends.length : ends.indexOf(Math.min(...ends));
+    ends[row] = place;
+    return row;
+  });
+}
 
 /** The name of a part that keyframes hold, by its JSON pointer. */
 function partName(pointer) {
@@ -30,6 +49,10 @@ export class Marks {
     this.asked = null;
     this.connection.on('error', () => this.giveUp());
     this.connection.on('lost', () => this.giveUp());
+    // Rows depend on the width.
+    new ResizeObserver(() => {
+      if (line.isOpen && this.now) line.update();
+    }).observe(this.element);
   }
 
   get now() { return this.line.now; }
@@ -60,12 +83,20 @@ export class Marks {
     return keyframe ?? [keyframes.findIndex((_, i) => isShown(i))].find((i) => i >= 0) ?? null;
   }
 
-  /** The next keyframe whose mark is at the same place, behind that of another; else that one. */
+  /** The next keyframe whose mark lies under that of another one; else that one. */
   below(i) {
-    const {keyframes} = this.now;
-    const place = this.frameOf(keyframes[i]);
-    const same = [...keyframes.keys()].filter((one) => this.frameOf(keyframes[one]) === place);
+    const places = this.places();
+    const rows = rowsOf(places);
+    const same = [...places.keys()].filter(
+      (one) => rows[one] === rows[i] && Math.abs(places[one] - places[i]) < edge / 2);
     return same[(same.indexOf(i) + same.length - 1) % same.length];
+  }
+
+  /** Where the marks are, in CSS pixels. */
+  places() {
+    const width = this.element.clientWidth - 2 * inset;
+    const last = Math.max(this.now.frames - 1, 1);
+    return this.now.keyframes.map((keyframe) => this.frameOf(keyframe) / last * width);
   }
 
   /** Chooses a keyframe by its mark, and goes to it. */
@@ -76,7 +107,7 @@ export class Marks {
     this.line.update();
   }
 
-  mark(keyframe, i) {
+  mark(keyframe, i, row) {
     const isChosen = this.chosen() === i;
     const parts = partNames(keyframe);
     const mark = button('◆', () => {}, {class: 'mark', 'data-keyframe': i,
@@ -88,6 +119,7 @@ export class Marks {
       onfocus: () => { this.focused = {keyframe: i, at: keyframe.at}; },
       onkeydown: (event) => this.pressKey(event, i)});
     mark.style.left = this.place(this.frameOf(keyframe));
+    mark.style.bottom = `${row * edge}px`;
     return mark;
   }
 
@@ -194,12 +226,15 @@ export class Marks {
 
   update() {
     const {now} = this;
-    const key = JSON.stringify([now.keyframes, this.chosen(), now.fps, now.frames]);
+    const rows = rowsOf(this.places());
+    const key = JSON.stringify([now.keyframes, this.chosen(), now.fps, now.frames, rows]);
     if (key === this.shownMarks) return;
     this.shownMarks = key;
     // The focus stays at its keyframe; where that is gone, at the one in its place.
     const had = this.element.contains(document.activeElement) ? this.focused : null;
-    this.element.replaceChildren(...now.keyframes.map((keyframe, i) => this.mark(keyframe, i)));
+    this.element.replaceChildren(
+      ...now.keyframes.map((keyframe, i) => this.mark(keyframe, i, rows[i])));
+    this.element.parentElement.style.setProperty('--rows', Math.max(...rows, 0) + 1);
     if (!had) return;
     const next = this.indexOf(had, had.keyframe) ??
       Math.min(had.keyframe, now.keyframes.length - 1);
