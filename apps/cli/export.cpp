@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -24,6 +25,7 @@ namespace {
 struct ExportArguments {
   RenderArguments scene;
   std::string output, largest, crop;
+  bool reduces = false;
 };
 
 /// "20M": a number of bytes, or of so many thousands of them.
@@ -85,6 +87,9 @@ int run_export(const ExportArguments& given) {
   check(given);
   ExportArguments arguments = given;
   if (!arguments.crop.empty()) arguments.scene.crop = parse_crop("--crop", arguments.crop);
+  if (arguments.reduces && arguments.largest.empty()) {
+    throw UsageError("--reduce: give --max-size, the size to reduce to");
+  }
   const double largest =
       arguments.largest.empty() ? 0 : parse_byte_count("--max-size", arguments.largest);
   PreparedScene prepared = prepare(arguments.scene);
@@ -93,16 +98,22 @@ int run_export(const ExportArguments& given) {
   if (!arguments.scene.quiet) {
     for (const std::string& note : prepared.import_notes) print_note(note);
   }
-  const std::string page = page_of(embed_scene(prepared.description, prepared.scene));
+  const auto [page, note] =
+      arguments.reduces
+          ? reduced_page(prepared.description, prepared.scene, static_cast<std::uint64_t>(largest))
+          : ReducedPage{page_of(embed_scene(prepared.description, prepared.scene)), ""};
   const double size = static_cast<double>(page.size());
   if (largest > 0 && size > largest) {
     throw Error(
-        fmt::format("{}: not written: it would have {:.1f} MB, more than --max-size {}; "
-                    "take a coarser --level or a part (--crop), or raise it",
-                    arguments.output, size / 1e6, arguments.largest));
+        fmt::format("{}: not written: it would have {:.1f} MB, more than --max-size {}{}; "
+                    "take a coarser --level or a part (--crop){}, or raise it",
+                    arguments.output, size / 1e6, arguments.largest,
+                    arguments.reduces ? ", also with the data reduced as far as they can be" : "",
+                    arguments.reduces ? "" : ", or give --reduce"));
   }
   write_text_file(arguments.output, page);
   if (!arguments.scene.quiet) {
+    if (!note.empty()) print_note(fmt::format("{}: {}", arguments.output, note));
     print_note(fmt::format("{}: {:.1f} MB; it opens in a browser without this program",
                            arguments.output, size / 1e6));
   }
@@ -131,6 +142,10 @@ Command add_export(CommandLine& app) {
       .add_option("--max-size", arguments->largest,
                   "Write nothing if the page is larger: a number of bytes, or with k, M or G")
       ->option_text("SIZE");
+  command.add_flag(
+      "--reduce", arguments->reduces,
+      "Make data coarser until the page has --max-size: half the resolution along each "
+      "axis, again and again. The page tells");
   command.add_threads(arguments->scene.threads);
   command.add_flag("-q,--quiet", arguments->scene.quiet, "Print no notes, only errors");
   add_scene_options(command, arguments->scene);
@@ -142,6 +157,7 @@ Command add_export(CommandLine& app) {
       "Examples:\n"
       "  pellucid export brain.nii.gz -o brain.html\n"
       "  pellucid export scene.json -o scene.html --max-size 20M\n"
+      "  pellucid export ct.nii.gz --max-size 20M --reduce -o ct.html\n"
       "  pellucid export cells.zarr --level 2 -o cells.html\n"
       "  pellucid export head.nrrd --crop 60:200,40:220,0:120 -o skull.html");
   return {&command, [arguments] { return run_export(*arguments); }};

@@ -12,7 +12,8 @@ import sys
 import weakref
 from typing import Any, Optional, Union
 
-from ._pellucid import Error, ViewerServer, page_of_scene
+from ._notes import tell
+from ._pellucid import Error, ViewerServer, page_of_scene, reduced_page_of_scene
 from ._render import scene_of
 from .scene import Scene
 
@@ -194,21 +195,37 @@ def view(data: Any, transfer_function: Any = None, *, open: Optional[bool] = Non
 
 
 def export(data: Any, path: Union[str, "os.PathLike[str]"], transfer_function: Any = None,
-           **how: Any) -> None:
+           *, max_size: Optional[int] = None, reduce: bool = False, **how: Any) -> None:
     """Writes a page (.html) that shows data in any browser, exact, without this program, as
     `pellucid export` does.
 
     data, transfer_function, **how  as render() takes them, except depth, error, values, progress
                                     and renderer; tolerance is a number
     path                            of the page, whose name ends in .html
+    max_size                        bytes that the page may have; a larger one is not written
+    reduce                          True: makes data coarser until the page has max_size
 
-    The page holds the values as they are. Raises Error as render() does, and for what a page cannot
-    hold: fields of one's own, a backdrop.
+    The page holds the values as they are. To reduce is to halve the resolution of the largest data
+    along each axis, again and again; a Note and the page say to what. Raises Error as render()
+    does, where the page is too large, and for what a page cannot hold: fields of one's own, a
+    backdrop.
     """
     target = pathlib.Path(path)
     if target.suffix.lower() != ".html":
         raise Error(f"{target}: expected a name that ends in .html")
-    page = page_of_scene(scene_of(data, transfer_function, **how))
+    if max_size is not None and not max_size > 0:
+        raise Error(f"max_size: expected a number of bytes, got {max_size!r:.60}")
+    if reduce and max_size is None:
+        raise Error("reduce: give max_size, the bytes to reduce to")
+    scene = scene_of(data, transfer_function, **how)
+    page, note = reduced_page_of_scene(scene, int(max_size)) if reduce \
+        else (page_of_scene(scene), "")
+    if max_size is not None and len(page) > max_size:
+        raise Error(f"{target}: not written: it would have {len(page)} bytes, more than max_size "
+                    f"{max_size}; make the data smaller or raise it"
+                    + ("" if reduce else ", or give reduce=True"))
+    if note:
+        tell(note)
     partial = target.with_name(target.name + ".part")
     try:
         partial.write_bytes(page)

@@ -46,6 +46,21 @@ py::bytes page_of_scene(const py::object& object, std::uint64_t most_bytes) {
   return py::bytes(page);
 }
 
+/// Returns a page of so many bytes at most, if its data can be made so coarse, and what it tells of
+/// them.
+py::tuple reduced_page_of_scene(const py::object& object, std::uint64_t most_bytes) {
+  PythonScene made = complete_python_scene(object);
+  name_arrays(made);
+  SceneDescription description = described(made);
+  description.camera = made.scene.camera;
+  ReducedPage reduced;
+  {
+    const ReleasedLock released;
+    reduced = reduced_page(description, made.scene, most_bytes);
+  }
+  return py::make_tuple(py::bytes(reduced.page), reduced.note);
+}
+
 /// Python's viewer of a scene: a server, and a thread that renders for its pages.
 class ViewerHandle {
  public:
@@ -210,6 +225,10 @@ void bind_viewers(py::module_& module) {
              py::arg("most_bytes") = std::numeric_limits<std::uint64_t>::max(),
              "The bytes of a page of HTML that holds the scene. Raises Error, also where its data "
              "have more bytes.");
+  module.def("reduced_page_of_scene", reduced_page_of_scene, py::arg("scene"),
+             py::arg("most_bytes"),
+             "A page likewise, with coarser data where it would have more bytes, and a line that "
+             "says so.");
   py::class_<ViewerHandle>(module, "ViewerServer", "What pellucid.Viewer is made of.")
       .def(py::init<const py::object&, int, int, const std::string&>(), py::arg("scene"),
            py::arg("port"), py::arg("threads"), py::arg("frame_ancestors"))

@@ -83,6 +83,19 @@ def test_export_holds_meshes(tmp_path, browse):
     numpy.testing.assert_array_equal(saved[heat], numpy.arange(5))
 
 
+def test_export_reduces(tmp_path):
+    volume = pellucid.Volume(smooth(numpy.float32, (40, 40, 40)))
+    pellucid.export(volume, tmp_path / "whole.html", max_size=50_000_000)
+    most = (tmp_path / "whole.html").stat().st_size - 100_000
+    with pytest.raises(pellucid.Error, match="not written.*reduce=True"):
+        pellucid.export(volume, tmp_path / "a.html", max_size=most)
+    with pytest.warns(pellucid.Note, match="21 x 21 x 21 of 40 x 40 x 40 values"):
+        pellucid.export(volume, tmp_path / "a.html", max_size=most, reduce=True)
+    assert (tmp_path / "a.html").stat().st_size <= most
+    with pytest.raises(pellucid.Error, match="give max_size"):
+        pellucid.export(volume, tmp_path / "b.html", reduce=True)
+
+
 def test_export_refuses(tmp_path):
     with pytest.raises(pellucid.Error, match="ends in .html"):
         pellucid.export("builtin:sphere:8", tmp_path / "a.png")

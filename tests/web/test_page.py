@@ -136,6 +136,41 @@ class Exported(PageTest):
         numpy.testing.assert_array_equal(got["values"].T, values[0:4, 1:6, 2:7])
         numpy.testing.assert_array_equal(got["affine"][:3, 3], [-2, -2, 0])
 
+    def test_data_that_are_reduced(self):
+        """They lie where they were, and the page is exact for them and says what they are."""
+        import numpy
+        rng = numpy.random.default_rng(3)
+        z, y, x = numpy.mgrid[-1:1:61j, -1:1:64j, -1:1:60j]
+        ball = numpy.exp(-2 * (x * x + y * y + z * z)) + rng.normal(0, 0.02, x.shape)
+        numpy.save(self.path("ball.npy"), ball.astype(numpy.float32))
+        numpy.save(self.path("small.npy"), ball[::8, ::8, ::8].astype(numpy.float32))
+        fits = self.run_program("export", "small.npy", "-o", "fits.html", "--max-size", "20M",
+                                "--reduce")
+        self.assertNotIn("reduced", fits.stderr)
+        for arguments, size in ((["ball.npy"], "31 x 33 x 31 of 60 x 64 x 61"),
+                                (["ball.npy", "--centering", "cell"],
+                                 "30 x 32 x 31 of 60 x 64 x 61")):
+            with self.subTest(size):
+                told = self.run_program("export", *arguments, "--max-size", "2.6M", "--reduce",
+                                        "-o", "page.html").stderr
+                note = f"data reduced: layer 1: {size} values; the picture is exact for these"
+                self.assertIn(f"page.html: {note}\n", told)
+                self.assertLessEqual(os.path.getsize(self.path("page.html")), 2_600_000)
+                page = self.open(self.path("page.html"), window=(500, 400))
+                self.assertIn(note[1:], page.text("#data-note"))
+                self.save_data(page, "ball.npz")
+                numpy.testing.assert_allclose(
+                    numpy.load(self.path("ball.npz"))["values"].mean(), ball.mean(), rtol=0.05)
+                self.check_frame(page, 2)
+                box = page.run("return viewer.box")
+                page.browser.quit()
+                whole = self.open(self.export(*arguments), window=(500, 400))
+                self.assertEqual(whole.run("return document.getElementById('data-note').hidden"),
+                                 True)
+                for end, values in whole.run("return viewer.box").items():
+                    numpy.testing.assert_allclose(values, box[end], atol=1e-9)
+                whole.browser.quit()
+
     def test_a_message_that_is_refused(self):
         """It ends no frame, and the picture is told to be exact behind it."""
         page = self.open(self.export("builtin:hydrogen:64", "--shading", "on"), window=(700, 500))
@@ -188,6 +223,9 @@ class Exported(PageTest):
                 (["builtin:sphere:16", "-o", "page.png"], "ends in .html"),
                 (["builtin:sphere:16", "-o", "page.html", "--max-size", "10k"], "--max-size 10k"),
                 (["builtin:sphere:16", "-o", "page.html", "--max-size", "much"], "as 20M or 500k"),
+                (["builtin:sphere:16", "-o", "page.html", "--max-size", "10k", "--reduce"],
+                 "reduced as far as they can be"),
+                (["builtin:sphere:16", "-o", "page.html", "--reduce"], "give --max-size"),
                 (["-o", "page.html"], "no input"),
                 (["missing.nii", "-o", "page.html"], "missing.nii"),
                 (["builtin:sphere:16", "--crop", "1:2,0:9,0:9", "-o", "page.html"], "two values"),

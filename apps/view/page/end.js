@@ -18,6 +18,9 @@ export function openSocket() {
 /** Data that the page brought with it. @returns {{name: string, bytes: function(): Uint8Array}[]} */
 export function embeddedFiles() { return []; }
 
+/** What is to be told of these data, in a line; empty: nothing. @returns {string} */
+export function embeddedNote() { return ''; }
+
 /**
  * Copies a file to the other end.
  * @param {number} set of files that belong together

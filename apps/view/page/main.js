@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {Connection} from './connection.js';
+import {embeddedNote} from './end.js';
 import {FitProgress} from './fit_progress.js';
 import {FourViews} from './four_views.js';
 import {FunctionPanel} from './function_panel.js';
@@ -30,6 +31,7 @@ export class Viewer {
     new OpenPanel(this);
     new LostPanel(this);
     this.addMessages();
+    this.tellNote();
     this.addControls();
     this.views = new FourViews(this);
     this.line = new Timeline(this);
@@ -70,6 +72,14 @@ export class Viewer {
     this.connection.send(message);
   }
 
+  /** Tells what the page says of the data that it brought. */
+  tellNote() {
+    const element = document.getElementById('data-note');
+    const note = embeddedNote();
+    element.textContent = note && `${note[0].toUpperCase()}${note.slice(1)}.`;
+    element.hidden = !note;
+  }
+
   addMessages() {
     const {connection} = this;
     connection.on('scene', (message) => this.setScene(message));
@@ -86,7 +96,10 @@ export class Viewer {
       this.lost = false;
       this.picture.resize();
     });
-    connection.on('opened', () => this.forgetScene());
+    connection.on('opened', () => {
+      this.forgetScene();
+      document.getElementById('data-note').hidden = true;
+    });
     connection.on('lost', () => {
       this.lost = true;
       this.tellState();

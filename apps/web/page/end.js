@@ -26,6 +26,11 @@ export function embeddedFiles() {
       bytes: () => bytesOf(element)}));
 }
 
+export function embeddedNote() {
+  const element = document.getElementById('embedded-note');
+  return element ? new TextDecoder().decode(bytesOf(element)) : '';
+}
+
 /** What is wrong with the page or the browser, in a sentence; empty: nothing. */
 function trouble(module) {
   if (!document.getElementById('embedded-end')) {

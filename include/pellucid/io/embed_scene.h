@@ -22,6 +22,7 @@ struct EmbeddedFile {
 struct EmbeddedScene {
   std::string scene;  ///< a document that parse_scene() reads
   std::vector<EmbeddedFile> files;
+  std::string note = {};  ///< told by the page, one line; may be empty
 };
 
 /// Returns the scene with its data as they were loaded: the values in their own types, the part,
@@ -37,5 +38,18 @@ EmbeddedScene embed_scene(const SceneDescription& description, const Scene& scen
 /// as WebAssembly and the data. It asks for no other file. Throws Error if the page that it is made
 /// of was not built (scripts/build-web) or is of another version.
 std::string page_of(const EmbeddedScene& scene);
+
+/// Page whose data may be coarser than those of its scene.
+struct ReducedPage {
+  std::string page;
+  std::string note;  ///< sizes to which data were reduced, as the page tells; empty: none were
+};
+
+/// Returns the page of a scene, with coarser data until it has no more than `most_bytes`: the
+/// largest get half their resolution along each axis of 16 values or more, by the means of values
+/// that are numbers, or by the most common label. Their boxes stay where they are. Meshes stay as
+/// they are, so that the page may still be larger. Throws Error as embed_scene() and page_of() do.
+ReducedPage reduced_page(const SceneDescription& description, const Scene& scene,
+                         std::uint64_t most_bytes);
 
 }  // namespace pellucid

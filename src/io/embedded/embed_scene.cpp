@@ -11,6 +11,7 @@
 #include <utility>
 #include <variant>
 
+#include "embedded/coarser_scene.h"
 #include "npy/write_npz.h"
 #include "pellucid/scene/error.h"
 #include "text/text.h"
@@ -25,11 +26,15 @@ constexpr const char* array_name = "values";
 /// Files with names of their own; data that several layers share are one.
 class Files {
  public:
-  explicit Files(std::uint64_t most_bytes) : most_bytes_(most_bytes) {}
+  Files(std::uint64_t most_bytes, const CoarserVolumes& coarser)
+      : most_bytes_(most_bytes), coarser_(coarser) {}
 
-  /// Makes the field one of a file that holds the volume. `name`: what to call it.
-  FieldSource add(const Volume& volume, std::string name, const FieldSource& from) {
-    const auto [known, is_new] = file_of_.try_emplace(bytes_of(volume).data());
+  /// Makes the field one of a file that holds the volume, or the one in its place. `name`: what to
+  /// call it.
+  FieldSource add(const Volume& given, std::string name, const FieldSource& from) {
+    const auto in_its_place = coarser_.find(bytes_of(given));
+    const Volume& volume = in_its_place == coarser_.end() ? given : *in_its_place->second;
+    const auto [known, is_new] = file_of_.try_emplace(bytes_of(volume));
     FieldSource field;
     field.options.array = array_name;
     if (has_npz_matrix(volume.description())) field.options.axes = "xyz";
@@ -78,12 +83,6 @@ class Files {
     };
   }
 
-  static std::span<const std::byte> bytes_of(const Volume& volume) {
-    return std::visit(
-        [](const auto& values) { return std::as_bytes(std::span(values.data(), values.size())); },
-        volume.data());
-  }
-
   /// Returns a plain name that no file has yet.
   std::string name_for(std::string name) {
     std::ranges::replace_if(
@@ -104,6 +103,7 @@ class Files {
   }
 
   std::uint64_t most_bytes_, total_ = 0;
+  const CoarserVolumes& coarser_;
   std::map<const std::byte*, std::string> file_of_;
   std::set<std::string> names_;
   std::vector<EmbeddedFile> files_;
@@ -183,13 +183,24 @@ struct Embedding {
 
 }  // namespace
 
+const std::byte* bytes_of(const Volume& volume) {
+  return std::visit(
+      [](const auto& values) { return reinterpret_cast<const std::byte*>(values.data()); },
+      volume.data());
+}
+
 EmbeddedScene embed_scene(const SceneDescription& description, const Scene& scene,
                           std::uint64_t most_bytes) {
+  return embed_coarser(description, scene, {}, most_bytes);
+}
+
+EmbeddedScene embed_coarser(const SceneDescription& description, const Scene& scene,
+                            const CoarserVolumes& coarser, std::uint64_t most_bytes) {
   SceneDescription embedded = description;
   if (!embedded.backdrop.empty()) {
     refuse("backdrop", "pages have no pictures behind the data; leave it out");
   }
-  Files files(most_bytes);
+  Files files(most_bytes, coarser);
   for (std::size_t i = 0; i < embedded.layers.size(); ++i) {
     LayerDescription& layer = embedded.layers[i];
     const std::string where =

@@ -33,11 +33,18 @@ void append_base64(std::string& text, std::string_view bytes) {
   }
 }
 
-void append_file(std::string& text, const EmbeddedFile& file) {
-  text += "<script type=\"text/plain\" data-embedded=\"" + file.name + "\" data-size=\"" +
-          std::to_string(file.bytes.size()) + "\">";
-  append_base64(text, file.bytes);
+/// Appends an element of HTML with these attributes that holds the bytes.
+void append_element(std::string& text, const std::string& attributes, std::string_view bytes) {
+  text += "<script type=\"text/plain\" " + attributes + ">";
+  append_base64(text, bytes);
   text += "</script>\n";
+}
+
+void append_file(std::string& text, const EmbeddedFile& file) {
+  append_element(
+      text,
+      "data-embedded=\"" + file.name + "\" data-size=\"" + std::to_string(file.bytes.size()) + "\"",
+      file.bytes);
 }
 
 }  // namespace
@@ -52,6 +59,7 @@ std::string page_of(const EmbeddedScene& scene) {
   std::string text = empty.substr(0, at);
   append_file(text, {"scene.json", scene.scene});
   for (const EmbeddedFile& file : scene.files) append_file(text, file);
+  if (!scene.note.empty()) append_element(text, "id=\"embedded-note\"", scene.note);
   return text + empty.substr(at + mark.size());
 }
 
