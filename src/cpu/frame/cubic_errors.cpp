@@ -76,6 +76,7 @@ CubicErrors::CubicErrors(const ImageView& image, ImageSize size, int stride, int
       across_(columns_ * rows_, std::numeric_limits<float>::infinity()),
       down_(across_) {
   const auto apart = static_cast<std::size_t>(stride);
+  const auto width = static_cast<std::size_t>(image.width);
   // Lines enough that taking one is nothing beside them; of columns those that share memory.
   constexpr std::size_t group = 16;
   const std::size_t groups_of_rows = (rows_ + group - 1) / group,
@@ -83,13 +84,13 @@ CubicErrors::CubicErrors(const ImageView& image, ImageSize size, int stride, int
   parallel_for_ordered(groups_of_rows + groups_of_columns, threads, [&](std::size_t n) {
     if (n < groups_of_rows) {
       for (std::size_t j = n * group; j < std::min((n + 1) * group, rows_); ++j) {
-        find_line(image.pixels + j * apart * image.width, apart, columns_,
-                  across_.data() + j * columns_, 1);
+        find_line(image.pixels + j * apart * width, apart, columns_, across_.data() + j * columns_,
+                  1);
       }
     } else {
       n -= groups_of_rows;
       for (std::size_t i = n * group; i < std::min((n + 1) * group, columns_); ++i) {
-        find_line(image.pixels + i * apart, apart * image.width, rows_, down_.data() + i, columns_);
+        find_line(image.pixels + i * apart, apart * width, rows_, down_.data() + i, columns_);
       }
     }
     return true;
