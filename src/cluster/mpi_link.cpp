@@ -74,6 +74,7 @@ void composite_packed(const std::vector<std::byte>& bytes, bool behind,
                       std::span<RayPixel> pixels) {
   std::int32_t count = 0;
   std::memcpy(&count, bytes.data(), sizeof(count));
+  if (count == 0) return;
   std::vector<std::int32_t> runs(2 * static_cast<std::size_t>(count));
   std::memcpy(runs.data(), bytes.data() + sizeof(count), runs.size() * sizeof(std::int32_t));
   const std::byte* from = bytes.data() + (1 + runs.size()) * sizeof(std::int32_t);

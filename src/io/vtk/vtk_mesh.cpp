@@ -87,7 +87,9 @@ std::vector<double> exodus_times(const std::filesystem::path& path) {
         file_bytes, memory_for_vtk(file_bytes));
     if (!bytes) throw Error(vtk_fails);
     times.resize(bytes.size / sizeof(double));
-    std::memcpy(times.data(), bytes.data.get(), times.size() * sizeof(double));
+    if (!times.empty()) {
+      std::memcpy(times.data(), bytes.data.get(), times.size() * sizeof(double));
+    }
   } catch (const Error& error) {
     throw Error(path.string() + ": " + one_line(error.what()));
   }
