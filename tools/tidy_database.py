@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the compilation database that clang-tidy goes through: the sources of src/ and apps/, each
-once (kernels are compiled once per instruction set, but say the same in each), and one source that
-includes every header of the core.
+"""Writes the compilation database that clang-tidy goes through: the sources of src/ and apps/, or
+the groups that include them (PELLUCID_UNITY), each once (kernels are compiled once per instruction
+set, but say the same in each), and one source that includes every header of the core.
 
   tidy_database.py COMPILE_COMMANDS FOLDER
 """
@@ -14,7 +14,8 @@ import sys
 def main():
     commands, folder = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
     root = pathlib.Path(__file__).resolve().parent.parent
-    ours = [f"{root}/src/", f"{root}/apps/"]
+    ours = [f"{top}/{part}/" for top in (root, commands.resolve().parent)
+            for part in ("src", "apps")]
     all_entries = [entry for entry in json.loads(commands.read_text())
                    if entry["file"].startswith(tuple(ours))]
     entries = list({entry["file"]: entry for entry in all_entries}.values())
