@@ -9,24 +9,10 @@
 
 namespace pellucid::view {
 
-namespace {
-
-struct Axes {
-  Vec3<double> right, up, forward;  ///< length 1
-};
-
-Axes axes_of(const Camera& camera) {
-  const Vec3<double> forward = normalized(camera.focal_point - camera.position);
-  const Vec3<double> right = normalized(cross(forward, camera.up));
-  return {right, cross(right, forward), forward};
-}
-
-}  // namespace
-
 void turn(Camera& camera, double x, double y) {
   const double drag = std::hypot(x, y);
   if (drag == 0) return;
-  const Axes axes = axes_of(camera);
+  const CameraAxes axes = camera_axes(camera);
   // The camera turns the other way than the data that follow the mouse.
   const Vec3<double> axis = (axes.up * -x + axes.right * -y) * (1 / drag);
   const double angle = drag * std::numbers::pi;
@@ -36,7 +22,7 @@ void turn(Camera& camera, double x, double y) {
 }
 
 void pan(Camera& camera, double x, double y) {
-  const Axes axes = axes_of(camera);
+  const CameraAxes axes = camera_axes(camera);
   const double height = height_at_focal_point(camera);
   const Vec3<double> move = (axes.up * y - axes.right * x) * height;
   camera.position = camera.position + move;
@@ -48,7 +34,7 @@ void zoom(Camera& camera, double factor) {
 }
 
 void roll(Camera& camera, double degrees) {
-  const Axes axes = axes_of(camera);
+  const CameraAxes axes = camera_axes(camera);
   camera.up = rotated(axes.up, axes.forward, degrees * std::numbers::pi / 180);
 }
 
@@ -61,7 +47,7 @@ void center(Camera& camera, const Vec3<double>& point) {
 void set_projection(Camera& camera, Projection projection, double reach) {
   if (camera.projection == projection) return;
   const double height = height_at_focal_point(camera);
-  const Vec3<double> forward = axes_of(camera).forward;
+  const Vec3<double> forward = camera_axes(camera).forward;
   camera.projection = projection;
   if (projection == Projection::orthographic) {
     camera.parallel_scale = height / 2;

@@ -49,7 +49,6 @@ py::list look_lights_of(const py::object& camera) {
   std::array<Vec3<double>, 8> cube;
   for (unsigned n = 0; n < 8; ++n) cube[n] = {1.0 * (n & 1), 0.5 * (n & 2), 0.25 * (n & 4)};
   const Camera seen = camera.is_none() ? default_camera(cube, {1, 1}) : camera_of(camera);
-  make_camera_frame(seen, {1, 1});
   const py::module_ scene = py::module_::import("pellucid.scene");
   py::list lights;
   for (const Light& light : look_lights(seen)) {

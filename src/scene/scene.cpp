@@ -40,13 +40,7 @@ Vec3<double> unit(Vec3<double> v) {
 
 }  // namespace
 
-CameraFrame<double> make_camera_frame(const Camera& camera, ImageSize size) {
-  if (size.width < 1 || size.width > largest_size || size.height < 1 ||
-      size.height > largest_size) {
-    throw Error("image: size is " + std::to_string(size.width) + " x " +
-                std::to_string(size.height) + ", but width and height must be from 1 to " +
-                std::to_string(largest_size));
-  }
+CameraAxes camera_axes(const Camera& camera) {
   require_finite(camera.position, "position");
   require_finite(camera.focal_point, "focal_point");
   require_finite(camera.up, "up");
@@ -67,11 +61,21 @@ CameraFrame<double> make_camera_frame(const Camera& camera, ImageSize size) {
                 tuple(view) + "; choose another up");
   }
   const Vec3<double> right = unit(side);
-  const Vec3<double> up = cross(right, forward);
+  return {right, cross(right, forward), forward};
+}
+
+CameraFrame<double> make_camera_frame(const Camera& camera, ImageSize size) {
+  if (size.width < 1 || size.width > largest_size || size.height < 1 ||
+      size.height > largest_size) {
+    throw Error("image: size is " + std::to_string(size.width) + " x " +
+                std::to_string(size.height) + ", but width and height must be from 1 to " +
+                std::to_string(largest_size));
+  }
+  const CameraAxes axes = camera_axes(camera);
 
   CameraFrame<double> frame;
   frame.position = camera.position;
-  frame.forward = forward;
+  frame.forward = axes.forward;
   frame.perspective = camera.projection == Projection::perspective;
   frame.width = size.width;
   frame.height = size.height;
@@ -89,8 +93,8 @@ CameraFrame<double> make_camera_frame(const Camera& camera, ImageSize size) {
     }
     half_height = camera.parallel_scale;
   }
-  frame.up = up * half_height;
-  frame.right = right * (half_height * size.width / size.height);
+  frame.up = axes.up * half_height;
+  frame.right = axes.right * (half_height * size.width / size.height);
   return frame;
 }
 

@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "expect_error.h"
+#include "pellucid/scene/error.h"
+#include "pellucid/scene/look.h"
 #include "pellucid/scene/scene.h"
 
 namespace pellucid::test_camera {
@@ -138,6 +140,28 @@ TEST(Camera, FrameIsRightHandedForObliqueViews) {
   EXPECT_NEAR(length(frame.up), half, 1e-15);
   EXPECT_NEAR(length(frame.right), 1.5 * half, 1e-15);
   EXPECT_NEAR(dot(cross(normalized(frame.right), normalized(frame.up)), frame.forward), -1, 1e-15);
+}
+
+TEST(Camera, AxesAreOfLengthOneAndThoseOfTheFrame) {
+  Camera c;
+  c.position = {3, -4, 5};
+  c.focal_point = {-1, 2, 0.5};
+  c.up = {0.1, 0.3, 2};
+  const CameraAxes axes = camera_axes(c);
+  for (const Vec3<double>& axis : {axes.right, axes.up, axes.forward}) {
+    EXPECT_NEAR(length(axis), 1, 1e-15);
+  }
+  expect_near(cross(axes.right, axes.up), -axes.forward);
+  const CameraFrame<double> frame = make_camera_frame(c, {300, 200});
+  EXPECT_EQ(frame.forward, axes.forward);
+  expect_near(normalized(frame.right), axes.right);
+  expect_near(normalized(frame.up), axes.up);
+  // Of a number that the axes do not need, they ask nothing.
+  c.vertical_angle = 200;
+  EXPECT_EQ(camera_axes(c).up, axes.up);
+  c.up = c.focal_point - c.position;
+  EXPECT_THROW(camera_axes(c), Error);
+  EXPECT_THROW(look_lights(c), Error);
 }
 
 TEST(Camera, TinyAndHugeDistancesKeepTheirDirection) {

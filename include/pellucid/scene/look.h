@@ -83,7 +83,7 @@ std::optional<double> hounsfield_air(const Volume& volume);
 void check_hounsfield(const std::string& what, const VolumeStatistics& data);
 
 /// Returns the lights of a look in light: one at the eye and one from the upper left, fixed in the
-/// world, which together are as bright as one. The camera must be valid.
+/// world, which together are as bright as one. Throws Error as camera_axes() does.
 std::vector<Light> look_lights(const Camera& camera);
 
 }  // namespace pellucid

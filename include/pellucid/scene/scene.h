@@ -34,9 +34,17 @@ struct ImageSize {
   int width = 512, height = 512;
 };
 
-/// Checks the camera and returns the frame that makes rays. Throws Error if the position equals the
-/// focal point, up is parallel to the view direction, the angle or scale is out of range, or a size
-/// is not in [1, 65536].
+/// Directions of a picture in world space: of length 1 and at right angles.
+struct CameraAxes {
+  Vec3<double> right, up;  ///< in the picture
+  Vec3<double> forward;    ///< from the camera to what it looks at
+};
+/// Returns the axes of a camera. Throws Error if a number is not finite, the position equals the
+/// focal point, or up is parallel to the view direction.
+CameraAxes camera_axes(const Camera& camera);
+
+/// Checks the camera and returns the frame that makes rays. Throws Error as camera_axes() does, and
+/// if the angle or scale is out of range, or a size is not in [1, 65536].
 CameraFrame<double> make_camera_frame(const Camera& camera, ImageSize size);
 
 /// Method by which rays are integrated. `exact` computes the integral of the reconstructed data.

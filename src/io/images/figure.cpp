@@ -133,11 +133,9 @@ void set_scale_bar(const FigureSpace& space, ImageSize size, FigurePage& page) {
   page.scale_bar_label = short_number(nice) + (space.unit.empty() ? "" : " " + space.unit);
 }
 
-void set_orientation(const FigureSpace& space, ImageSize size, FigurePage& page) {
-  const CameraFrame<double> frame = make_camera_frame(space.camera, size);
-  const Vec3<double> right = normalized(frame.right), up = normalized(frame.up);
-  const double along =
-      std::max({std::abs(frame.forward.x), std::abs(frame.forward.y), std::abs(frame.forward.z)});
+void set_orientation(const FigureSpace& space, FigurePage& page) {
+  const auto [right, up, forward] = camera_axes(space.camera);
+  const double along = std::max({std::abs(forward.x), std::abs(forward.y), std::abs(forward.z)});
   const bool at_edges =
       space.is_anatomical && along >= std::cos(degrees_along_axis * std::numbers::pi / 180);
   const Vec3<double> edges[] = {right * -1.0, right, up, up * -1.0};
@@ -194,7 +192,7 @@ FigurePage page_of(const Figure& figure, ImageSize size, FigureFormat format,
     set_scale_bar(*figure.space, size, page);
   }
   if (figure.space && figure.parts.orientation && page.axes.empty()) {
-    set_orientation(*figure.space, size, page);
+    set_orientation(*figure.space, page);
   }
   if (figure.parts.caption) {
     page.caption = figure.caption;

@@ -256,16 +256,14 @@ std::optional<double> hounsfield_air(const Volume& volume) {
 }
 
 std::vector<Light> look_lights(const Camera& camera) {
-  const Vec3<double> forward = normalized(camera.focal_point - camera.position);
-  const Vec3<double> right = normalized(cross(forward, camera.up));
-  const Vec3<double> up = cross(right, forward);
+  const CameraAxes axes = camera_axes(camera);
   constexpr Rgb<double> half{0.6, 0.6, 0.6};
   Light head, key;
   head.color = half;
   key.color = half;
   // Three decimals, so that cameras that differ by rounding have one light.
   const auto short_number = [](double x) { return std::round(1000 * x) / 1000; };
-  const Vec3<double> direction = forward * 0.6 + right * 0.55 - up * 0.6;
+  const Vec3<double> direction = axes.forward * 0.6 + axes.right * 0.55 - axes.up * 0.6;
   key.kind = DirectionalLight{
       {short_number(direction.x), short_number(direction.y), short_number(direction.z)}};
   return {head, key};
