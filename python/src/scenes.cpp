@@ -353,13 +353,8 @@ SceneDescription described(const PythonScene& made) {
     layer.content = {};
     name_channels(layer);
   }
-  description.clips = scene.clips;
-  description.lights = scene.lights;
+  static_cast<SceneSettings&>(description) = scene;
   if (made.has_camera) description.camera = scene.camera;
-  description.size = scene.size;
-  description.samples = scene.samples;
-  description.integration = scene.integration;
-  description.background = scene.background;
   description.is_transparent = made.is_transparent;
   return description;
 }

@@ -365,13 +365,8 @@ class BrickLoader {
   Scene make() {
     Scene scene;
     for (std::optional<Layer>& layer : layers_) scene.layers.push_back(*std::move(layer));
-    scene.clips = description_.clips;
-    scene.lights = description_.lights;
-    scene.size = description_.size;
-    scene.samples = description_.samples;
+    static_cast<SceneSettings&>(scene) = description_;
     scene.camera = camera();
-    scene.integration = description_.integration;
-    scene.background = description_.background;
     agreed(ranks_, [&] {
       if (!description_.backdrop.empty()) {
         scene.backdrop = std::make_shared<const Image>(read_exr(description_.backdrop));

@@ -66,7 +66,8 @@ Layer::Layer(Shared<MeshChannels> mesh, Shared<MultivariateTransferFunction> fun
 Layer::Layer(Shared<LabelVolume> labels, Shared<LabelTable> table)
     : content(LabelContent{std::move(labels.object), std::move(table.object)}) {}
 
-Scene::Scene(Layer layer, ImageSize wanted) : size(wanted) {
+Scene::Scene(Layer layer, ImageSize wanted) {
+  size = wanted;
   check_layer(layer, "layer");
   layers.push_back(std::move(layer));
   camera = default_camera(visible_corners(*this), size);

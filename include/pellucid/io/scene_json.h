@@ -72,15 +72,9 @@ struct LayerDescription : Layer {
 
 /// A scene as written in a file; no data are read or rendered yet. Absent keys have their defaults.
 /// docs/reference/scene.md describes every key; scene.schema.json beside it is the JSON Schema.
-struct SceneDescription {
+struct SceneDescription : SceneSettings {
   std::vector<LayerDescription> layers{LayerDescription{}};
-  std::vector<Clip> clips;
-  std::vector<Light> lights{Light{}};
-  std::optional<Camera> camera;
-  ImageSize size;
-  int samples = 1;
-  Integration integration;
-  std::optional<Background> background;
+  std::optional<Camera> camera;  ///< none: default_camera() of visible_corners()
   /// True if a .png keeps its transparency; if not, one without a background gets
   /// calm_background().
   bool is_transparent = false;

@@ -117,24 +117,29 @@ struct Integration {
 /// differs; nothing else changes a tolerance that is out of range, but refuses it.
 double nearest_tolerance(double wanted);
 
+/// Settings of a picture beside its layers and its camera: those of a Scene and those that a file
+/// has (SceneDescription).
+struct SceneSettings {
+  std::vector<Clip> clips;  ///< for all layers; what all of them keep is shown
+  std::vector<Light> lights = std::vector<Light>(1);  ///< for all layers that have a shading
+  ImageSize size;
+  /// A pixel is the mean of samples × samples rays through the centres of its equal parts.
+  int samples = 1;
+  Integration integration;
+  std::optional<Background> background;  ///< none: the image stays transparent
+};
+
 /// Picture to render: data, camera and accuracy. Where layers overlap, their extinctions add, and
 /// so do extinction · color: a mixture of particles (Max 1995). The order of the layers does not
 /// matter, except among projected ones (Layer::projection).
-struct Scene {
+struct Scene : SceneSettings {
   Scene() = default;
   /// A scene of one layer, seen by default_camera() of visible_corners(). Throws Error unless the
   /// layer passes check_layer(), and if a size is not in [1, 65536].
   explicit Scene(Layer layer, ImageSize wanted = {});
 
   std::vector<Layer> layers;
-  std::vector<Clip> clips;  ///< for all layers; what all of them keep is shown
-  std::vector<Light> lights = std::vector<Light>(1);  ///< for all layers that have a shading
   Camera camera;
-  ImageSize size;
-  /// A pixel is the mean of samples × samples rays through the centres of its equal parts.
-  int samples = 1;
-  Integration integration;
-  std::optional<Background> background;  ///< none: the image stays transparent
   /// A picture of geometry among the data, for example of a host program: as large as `size`, with
   /// a depth per pixel (Image::depth, a distance from the ray's origin; infinite where there is
   /// nothing). Rays end there, and its pixels are behind what they gather. May be null.

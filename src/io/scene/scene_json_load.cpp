@@ -430,6 +430,7 @@ Scene remake_scene(const SceneDescription& description,
     return remake_scene(at_time, loaded, parallel, meshes_used);
   }
   Scene scene;
+  static_cast<SceneSettings&>(scene) = description;
   const Wanted wanted{description.integration.tolerance, description.background};
   std::vector<MeshSource> meshes(description.layers.size());
   for (std::size_t i = 0; i < description.layers.size(); ++i) {
@@ -437,15 +438,9 @@ Scene remake_scene(const SceneDescription& description,
     scene.layers.push_back(load_layer(description.layers[i], wanted, kept, parallel, meshes[i]));
   }
   if (meshes_used != nullptr) *meshes_used = std::move(meshes);
-  scene.clips = description.clips;
-  scene.lights = description.lights;
-  scene.size = description.size;
-  scene.samples = description.samples;
   scene.camera = description.camera
                      ? *description.camera
                      : default_camera(visible_corners(scene, parallel), description.size);
-  scene.integration = description.integration;
-  scene.background = description.background;
   if (!description.backdrop.empty()) {
     scene.backdrop = std::make_shared<const Image>(read_exr(description.backdrop));
   }
