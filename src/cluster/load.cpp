@@ -92,6 +92,37 @@ void check_functions(const SceneDescription& scene) {
   }
 }
 
+bool is_preset(const TransferFunctionDescription* function) {
+  return function != nullptr && std::holds_alternative<PresetDescription>(*function);
+}
+
+/// Returns what of a layer's look is made of all of its data, for messages; empty: nothing.
+std::string made_of_data(const LayerDescription& layer) {
+  const auto* const function = layer.transfer_function ? &*layer.transfer_function : nullptr;
+  if (is_preset(function)) return "a preset";
+  if (layer.mask) {
+    for (const MaskSource::Choice& choice : layer.mask->choices) {
+      if (is_preset(&choice.transfer_function)) return "a preset in its mask";
+    }
+  }
+  if (layer.function_change.range) {
+    const auto& [least, most] = *layer.function_change.range;
+    if (least.is_percent || most.is_percent) return "a range in percent";
+  }
+  if (layer.labels && !layer.labels->table.empty() && !layer.labels->extinction) {
+    return "a table of labels without an extinction";
+  }
+  for (const Isosurface& surface : layer.isosurfaces) {
+    if (is_preset(surface.written_colors.get())) return "an isosurface with the colors of a preset";
+  }
+  const bool is_of_one = function != nullptr && layer_channels(layer).empty();
+  for (const Slice& slice : layer.slices) {
+    if (is_preset(slice.written_colors.get())) return "a slice with the colors of a preset";
+    if (!slice.colors && !slice.written_colors && !is_of_one) return "a slice without colors";
+  }
+  return "";
+}
+
 /// Returns a checksum of what ranks must have alike before they work together, without what
 /// render() compares by name, and without paths, which may differ from machine to machine.
 std::string checksum(SceneDescription scene, BrickBalance balance) {
@@ -145,7 +176,14 @@ class BrickLoader {
     check_functions(description_);
     layers_.resize(description_.layers.size());
     meshes_.resize(description_.layers.size());
-    for (const LayerDescription& layer : description_.layers) plans_.push_back(plan_of(layer));
+    for (const LayerDescription& layer : description_.layers) {
+      plans_.push_back(plan_of(layer));
+      const std::string made = plans_.back().in_parts ? made_of_data(layer) : "";
+      if (made.empty() || ranks_.size() == 1) continue;
+      throw Error("ranks: layer " + std::to_string(plans_.size()) + " has " + made +
+                  ", which is made of all of the data, and a rank has a part of them; give what "
+                  "comes of it ('pellucid render FILE --save-scene SCENE.json' writes it)");
+    }
   }
 
   std::vector<std::array<int, 3>> dimensions() const {
