@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -16,6 +15,7 @@
 #include "half_depths.h"
 #include "pellucid/base/version.h"
 #include "pellucid/cluster/sub_scene.h"
+#include "pellucid/io/internal/scene_facts.h"
 #include "pellucid/scene/error.h"
 #include "rank_projections.h"
 #include "rank_work.h"
@@ -33,36 +33,39 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-std::string text(double number) {
-  std::array<char, 32> room;
-  return {room.data(), std::to_chars(room.data(), room.data() + room.size(), number).ptr};
+/// Returns the scene without the numbers that depend on the size of a rank's voxels
+/// (agree_on_ranges(), sub_layer()).
+Scene without_voxels(Scene scene) {
+  for (Layer& layer : scene.layers) {
+    if (grid_of(layer) == nullptr) continue;
+    if (layer.shading && layer.shading->flatness) layer.shading->flatness = 0;
+    if (!layer.gradient_opacity) continue;
+    std::vector<GradientOpacity::Point> points = layer.gradient_opacity->points();
+    for (std::size_t i = 0; i < points.size(); ++i) points[i].gradient = static_cast<double>(i);
+    layer.gradient_opacity = std::make_shared<const GradientOpacity>(
+        std::move(points), GradientOpacity::Unit::world, layer.gradient_opacity->channel());
+  }
+  return scene;
 }
 
 /// Throws AgreedError unless all that makes a frame one is the same on all ranks.
 void check_frame(Communicator& ranks, const BrickTree& tree, const Scene& scene,
                  const RenderOptions& options) {
-  const Camera& camera = scene.camera;
-  std::string view;
-  for (const Vec3<double>& v : {camera.position, camera.focal_point, camera.up}) {
-    for (int a = 0; a < 3; ++a) view += text(v[a]) + " ";
+  std::vector<std::pair<std::string, std::string>> own;
+  for (SceneFact& fact : scene_facts(without_voxels(scene))) {
+    own.emplace_back(std::move(fact.name), std::move(fact.text));
   }
+  const FrameOutputs& outputs = options.outputs;
+  own.emplace_back("the list of outputs", std::string("color") + (outputs.depth ? ", depth" : "") +
+                                              (outputs.values ? ", values" : ""));
   Checksum sum;
   for (int brick = 0; brick < tree.count(); ++brick) {
     for (const Vec3<double>& corner : tree.corners(brick)) {
       for (int a = 0; a < 3; ++a) sum.add(corner[a]);
     }
   }
-  check_equal(ranks, {{"the size of the picture", std::to_string(scene.size.width) + "x" +
-                                                      std::to_string(scene.size.height) + ", " +
-                                                      std::to_string(scene.samples) + " samples"},
-                      {"the tolerance", text(scene.integration.tolerance)},
-                      {"the camera",
-                       view + text(camera.vertical_angle) + " " + text(camera.parallel_scale)},
-                      {"the number of layers and the largest color",
-                       std::to_string(scene.layers.size()) + ", " + text(largest_color(scene)) +
-                           (options.outputs.depth ? ", with depth" : "") +
-                           (options.outputs.values ? ", with values" : "")},
-                      {"the bricks' checksum", std::to_string(sum.value())}});
+  own.emplace_back("the bricks' checksum", std::to_string(sum.value()));
+  check_equal(ranks, own);
 }
 
 /// Returns the most bricks that rays of the frame meet, as every fourth tells; at least 1. What a

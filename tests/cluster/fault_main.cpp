@@ -4,7 +4,8 @@
 //
 //   mpirun -n N test_rank_faults FAULT
 //
-// Prints "ended: MESSAGE" on rank 0. FAULT: throw, kill, version, frame, cancel_first, cancel_last.
+// Prints "ended: MESSAGE" on rank 0. FAULT: throw, kill, version, frame, camera,
+// light, cancel_first, cancel_last.
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -46,6 +47,12 @@ void run(Communicator& ranks, const std::string& fault) {
     check_equal(ranks, "the version", is_last ? "0.0.1" : "0.0.2");
   } else if (fault == "frame") {
     render_long(ranks, {}, is_last ? 33 : 32);
+  } else if (fault == "camera" || fault == "light") {
+    Scene scene = cluster_tests::rank_scenes(16)[1].scene;
+    scene.camera.projection =
+        is_last && fault == "camera" ? Projection::orthographic : Projection::perspective;
+    if (is_last && fault == "light") scene.layers[0].shading = Shading{.power = 7};
+    render(ranks, scene, {});
   } else if (fault == "cancel_first") {
     render_long(ranks, [&](double) { return !is_first; });
   } else if (fault == "cancel_last") {

@@ -7,6 +7,7 @@ pellucid_io_sources(
     gaussian_text.cpp
     label_table.cpp
     mesh_source.cpp
+    scene_facts.cpp
     scene_json.cpp
     scene_json_animation.cpp
     scene_json_change.cpp
