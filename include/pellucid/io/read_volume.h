@@ -59,24 +59,18 @@ struct VolumeOutline {
 /// Reads the header that read_volume() reads, and no values. Throws Error as it does.
 VolumeOutline outline_volume(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Reads a volume. The format follows from the extension, for VTK files from the first bytes:
+/// Reads a volume. The format follows from the extension (volume_extensions()), for VTK files from
+/// the first bytes; docs/reference/command-line.md has the table of both. Beside files with an
+/// extension these are read:
 ///
-/// - .nii .nii.gz .hdr/.img(.gz), .mgz .mgh; .nrrd .nhdr .mha .mhd through ITK, if the build has
-///   it;
-/// - .npy, .npz, .slc, .raw, .mrc .map .rec .st .ccp4 (each also .gz);
-/// - a .dat, .ivf or .vvd header of Inviwo or Voreen;
-/// - stores of Zarr and OME-Zarr, by their folder;
-/// - data sets of vtk.js, by their folder or its index.json;
-/// - DICOM (.dcm .ima): a series by its folder or any of its files, whatever their names;
-/// - a stack of images (.tif .tiff .png): any of its files, a pattern ("slice%03d.tif") or the
-///   folder;
-/// - images and rectilinear grids of VTK (.vti, .pvti, .vtr, .pvtr, legacy .vtk), if the build has
-///   VTK: arrays of points are point-centred, arrays of cells cell-centred, bits become u8;
-/// - datasets of HDF5 (.h5, .hdf5, .he5) and variables of NetCDF (.nc, .nc4, .cdf), if the build
-///   has the libraries; NetCDF provides positions along the axes, scaled values, and NaN for
-///   missing ones;
-/// - fog volumes of OpenVDB (.vdb), if the build has it, as the dense grid of their active box;
+/// - stores of Zarr and OME-Zarr, and data sets of vtk.js, by their folder;
+/// - DICOM: a series by its folder or any of its files, whatever their names;
+/// - a stack of images: any of its files, a pattern ("slice%03d.tif") or the folder;
 /// - any file as raw data if dimensions and type are both given.
+///
+/// Arrays of points of VTK's files are point-centred, arrays of cells cell-centred, and bits become
+/// u8. NetCDF provides positions along the axes, scaled values, and NaN for missing ones. OpenVDB
+/// gives the dense grid of the active box.
 ///
 /// Half floats become float. Integers of 64 bits become the smallest type that holds each of them;
 /// if only double is left and rounds some, `note` is told.
