@@ -112,8 +112,18 @@ def animate(scene: Union[Scene, Iterable[Any]], path: Union[str, os.PathLike],
     if fps is not None and not (isinstance(fps, (int, float)) and 0 < fps <= 1000):
         raise Error(f"fps: expected a number above 0, up to 1000, got {fps!r:.60}")
     files = _pellucid._FilmFiles(os.fspath(path))
-    files.hold()
     made, count, own_fps = _stamped(scene, animation)
+    files.hold()
+    try:
+        _write(files, made, count, own_fps if fps is None else fps, keep_frames, threads, progress)
+    finally:
+        # Tracebacks keep the files.
+        files.release()
+
+
+def _write(files: Any, made: Iterator, count: Optional[int], fps: float, keep_frames: bool,
+           threads: int, progress: Optional[Callable[[int, Optional[int]], Any]]) -> None:
+    """Renders the frames of a film, and makes its file."""
     renderer = Renderer(threads)
     index, size = 0, None
     for each, made_from in made:
@@ -132,4 +142,4 @@ def animate(scene: Union[Scene, Iterable[Any]], path: Union[str, os.PathLike],
             progress(index, count)
     if index == 0:
         raise Error("animate: there is no frame")
-    files.finish(index, own_fps if fps is None else fps, keep_frames)
+    files.finish(index, fps, keep_frames)

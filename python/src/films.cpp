@@ -113,6 +113,7 @@ void bind_films(py::module_& module) {
           },
           py::arg("width"), py::arg("height"))
       .def("hold", [](FilmFiles& files) { files.hold(FilmFiles::Holder::alone); })
+      .def("release", &FilmFiles::release)
       .def("has", &FilmFiles::has, py::arg("frame"), py::arg("made_from"))
       .def(
           "write",

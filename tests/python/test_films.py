@@ -120,6 +120,22 @@ def test_a_video(tmp_path):
     assert sorted(each.name for each in tmp_path.iterdir()) == ["o.webm"]
 
 
+@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="ffmpeg is not installed")
+def test_one_call_makes_a_video_at_a_time(tmp_path):
+    scene = scene_of(pellucid.builtin_field("shells", 8),
+                     animation={"seconds": 0.5, "fps": 4, "turntable": {}})
+
+    def again(done, count):
+        pellucid.animate(scene, tmp_path / "o.webm")
+
+    with pytest.raises(Error, match="another call makes this video now") as kept:
+        pellucid.animate(scene, tmp_path / "o.webm", progress=again)
+    # A call that has ended holds nothing, also while its traceback is kept.
+    pellucid.animate(scene, tmp_path / "o.webm")
+    assert kept.value is not None
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["o.webm"]
+
+
 def test_an_interrupt_ends_ffmpeg(tmp_path, monkeypatch):
     program = tmp_path / "ffmpeg"
     program.write_text("#!/bin/sh\ncase \"$*\" in *lavfi*) exit 0 ;; esac\nexec sleep 60\n")

@@ -29,11 +29,13 @@ class FilmFiles {
   bool is_video() const noexcept { return !folder_.empty(); }
   /// Throws Error if FFmpeg cannot encode a video of this size. Does nothing if no video is wanted.
   void check_size(ImageSize size) const;
-  /// Holds the folder of a video's pictures, which is made, until this is gone: alone, or beside
+  /// Holds the folder of a video's pictures, which is made, until release(): alone, or beside
   /// others that render parts of the film. An empty folder goes with it. Does nothing if no video
   /// is wanted. Throws Error if another one holds it.
   enum class Holder { alone, beside_others };
   void hold(Holder holder);
+  /// Ends that.
+  void release() noexcept { hold_.reset(); }
   /// Returns the path of a picture, counted from 0.
   std::filesystem::path picture(int frame) const;
 
