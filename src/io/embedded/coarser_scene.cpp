@@ -119,9 +119,16 @@ std::vector<std::string> CoarserScene::notes() const {
 ReducedPage reduced_page(const SceneDescription& description, const Scene& scene,
                          std::uint64_t most_bytes) {
   CoarserScene coarser(description, scene);
+  std::uint64_t most_data = most_bytes;
   while (true) {
-    EmbeddedScene embedded = embed_coarser(description, scene, coarser.volumes(),
-                                           std::numeric_limits<std::uint64_t>::max());
+    EmbeddedScene embedded;
+    try {
+      embedded = embed_coarser(description, scene, coarser.volumes(), most_data);
+    } catch (const TooManyBytes&) {
+      // The page that is too large tells its size.
+      if (!coarser.step()) most_data = std::numeric_limits<std::uint64_t>::max();
+      continue;
+    }
     for (const std::string& note : coarser.notes()) {
       embedded.note += (embedded.note.empty() ? "data reduced: " : ", ") + note;
     }

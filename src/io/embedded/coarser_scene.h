@@ -10,6 +10,7 @@
 
 #include "coarser_volume.h"
 #include "pellucid/io/embed_scene.h"
+#include "pellucid/scene/error.h"
 
 namespace pellucid {
 
@@ -18,7 +19,13 @@ using CoarserVolumes = std::map<const std::byte*, std::shared_ptr<const Volume>>
 
 const std::byte* bytes_of(const Volume& volume);
 
-/// Returns what embed_scene() does, with coarser data.
+/// Error of data that have more bytes than they may.
+class TooManyBytes : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Returns what embed_scene() does, with coarser data. Throws TooManyBytes as soon as there are.
 EmbeddedScene embed_coarser(const SceneDescription& description, const Scene& scene,
                             const CoarserVolumes& coarser, std::uint64_t most_bytes);
 

@@ -76,8 +76,8 @@ class Files {
     return [this, &bytes](std::span<const std::byte> part) {
       total_ += part.size();
       if (total_ > most_bytes_) {
-        throw Error("not embedded: the data have more than " + std::to_string(most_bytes_) +
-                    " bytes, also where they are compressed; make them smaller");
+        throw TooManyBytes("not embedded: the data have more than " + std::to_string(most_bytes_) +
+                           " bytes, also where they are compressed; make them smaller");
       }
       bytes.append(reinterpret_cast<const char*>(part.data()), part.size());
     };
