@@ -91,6 +91,7 @@ fs::path make_file(const Work& work, const fs::path& folder,
   if (!files.finish(count, work.fps, false, cancelled)) throw Cancelled();
   if (!is_zip) return made;
   std::vector<fs::path> pictures;
+  pictures.reserve(static_cast<std::size_t>(count));
   for (int frame = 0; frame < count; ++frame) pictures.push_back(files.picture(frame));
   write_zip(made, pictures);
   return made;
