@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes the compilation database that clang-tidy goes through: the sources of src/ and apps/, or
 the groups that include them (PELLUCID_UNITY), each once (kernels are compiled once per instruction
-set, but say the same in each), and one source that includes every header of the core.
+set, but say the same in each), and one source that includes every header of the core. Sources that
+a build makes are left out.
 
   tidy_database.py COMPILE_COMMANDS FOLDER
 """
@@ -17,7 +18,8 @@ def main():
     ours = [f"{top}/{part}/" for top in (root, commands.resolve().parent)
             for part in ("src", "apps")]
     all_entries = [entry for entry in json.loads(commands.read_text())
-                   if entry["file"].startswith(tuple(ours))]
+                   if entry["file"].startswith(tuple(ours))
+                   and pathlib.Path(entry["file"]).exists()]
     entries = list({entry["file"]: entry for entry in all_entries}.values())
 
     headers = sorted((root / "include").rglob("*.h"))
