@@ -8,7 +8,7 @@
 #include <vector>
 
 // CLI11 is compiled in command_line.cpp alone: every file that includes it takes seconds more.
-namespace CLI {
+namespace CLI {  // NOLINT: the name that CLI11 has
 class App;
 class Option;
 }  // namespace CLI
