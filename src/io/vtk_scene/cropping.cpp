@@ -12,7 +12,8 @@ namespace {
 using Regions = std::bitset<27>;
 
 std::size_t number(int x, int y, int z) {
-  return static_cast<std::size_t>(x + 3 * y + 9 * z);
+  const int place = x + 3 * y + 9 * z;
+  return static_cast<std::size_t>(place);
 }
 
 template <class Visit>

@@ -116,6 +116,7 @@ std::vector<TableLayer> GridTranslator::layers() {
   if (mapper_.cropping) layers_ *= boxes_of(mapper_.cropping->flags).size();
   if (is_dependent) return cropped({{dependent_layer()}});
   std::vector<TableLayer> made;
+  made.reserve(shown.size());
   for (const int component : shown) made.push_back(component_layer(component));
   if (made.size() > 1) notes_.add("components mix as particles do; VTK adds their colors");
   return cropped(made);
@@ -196,6 +197,7 @@ Layer GridTranslator::dependent_layer() {
   Layer layer = placed_layer();
   const int components = data_.components;
   std::vector<std::shared_ptr<const Volume>> data;
+  data.reserve(static_cast<std::size_t>(components));
   for (int c = 0; c < components; ++c) data.push_back(data_.volume(c));
   const LookRamps ramps{ramp_range(components - 1), ramp_range(0)};
   DependentRecipe recipe{recipe_of(0, *data.back(), ramps), {}};
@@ -211,6 +213,7 @@ Layer GridTranslator::dependent_layer() {
   for (JoinedPoint& point : recipe.opacity.points) point.b = {};
   const auto channels = kept_.channels.find(data, [](const auto& volumes) {
     std::vector<Channel> list;
+    list.reserve(volumes.size());
     for (const auto& volume : volumes) list.push_back({std::to_string(list.size()), "", volume});
     return Channels(std::move(list));
   });

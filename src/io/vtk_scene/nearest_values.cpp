@@ -41,6 +41,7 @@ std::vector<ValueLook> looks_of(const std::vector<double>& values,
                                 const ComponentSettings& component, const RampRange& ramp,
                                 FunctionReader& reader) {
   std::vector<ValueLook> looks;
+  looks.reserve(values.size());
   for (const double value : values) {
     looks.push_back({reader.opacity_at(component.opacity, ramp, value),
                      reader.color_at(component, ramp, value)});
