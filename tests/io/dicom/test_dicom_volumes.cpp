@@ -202,7 +202,7 @@ TEST_F(DicomVolumesTest, FramesOfOneFileAreToldApart) {
   file.text[0x00280008] = {"IS", "6"};
   for (int i = 0; i < 6; ++i) {
     file.sequences[0x52009230].push_back(
-        w.sequence(0x00209111, {w.element(0x00209128, "UL", w.number(i % 2 + 1, 4))}) +
+        w.sequence(0x00209111, {w.element(0x00209128, "UL", w.number(i % 2 == 0 ? 1 : 2, 4))}) +
         w.sequence(0x00209113,
                    {w.element(0x00200032, "DS", "10\\20\\" + std::to_string(30 + 3 * (i / 2)))}));
     file.pixels += bytes_of(std::vector<std::uint16_t>(20, static_cast<std::uint16_t>(i)));
