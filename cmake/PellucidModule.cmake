@@ -34,6 +34,13 @@ target_compile_options(pellucid_build_flags INTERFACE
   $<$<AND:${_pellucid_gcc},$<VERSION_GREATER_EQUAL:${_pellucid_gxx},13>>:-Wno-dangling-reference>
   $<$<BOOL:${PELLUCID_WERROR}>:-Werror>)
 
+# OpenVDB includes a part of Boost 1.74 that casts -1 to an enumeration, which is an error there.
+set(pellucid_openvdb_options)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER 16
+   AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 20)
+  set(pellucid_openvdb_options -Wno-enum-constexpr-conversion)
+endif()
+
 if(PELLUCID_WEB)
   # What Emscripten's standard library lacks stands in front of it. Exceptions are WebAssembly's own
   # (-fwasm-exceptions, also where it is linked). Of sizes that are 32 bits wide there is no end.

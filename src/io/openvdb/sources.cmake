@@ -11,10 +11,7 @@ if(PELLUCID_WITH_OPENVDB)
   find_package(TBB REQUIRED)
   pellucid_grid_module(OPENVDB pellucid_openvdb openvdb/openvdb.h openvdb ""
     openvdb/openvdb_read.cpp OpenVDB TBB::tbb Imath::Imath)
-  # OpenVDB includes a part of Boost 1.74 that casts -1 to an enumeration, which is an error there.
-  if(TARGET pellucid_openvdb AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang"
-     AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER 16
-     AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 20)
-    target_compile_options(pellucid_openvdb PRIVATE -Wno-enum-constexpr-conversion)
+  if(TARGET pellucid_openvdb)
+    target_compile_options(pellucid_openvdb PRIVATE ${pellucid_openvdb_options})
   endif()
 endif()
