@@ -18,7 +18,7 @@ bool is_video_extension(const std::string& extension);
 void check_video(const std::filesystem::path& path, std::optional<ImageSize> size = {});
 
 /// Makes a video of pictures "000000.png" … in a folder, by FFmpeg, which is a process of its own.
-/// Where a size is odd the last row or column is there twice. Equal pictures make an equal file.
+/// Repeats the last row or column where a size is odd. Equal pictures make an equal file.
 /// Throws Error with the first line of what it says. `ended` is asked some twenty times a second,
 /// if there is one: where it returns true the process is killed, no file is left, and false is
 /// returned.

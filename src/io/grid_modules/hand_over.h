@@ -18,7 +18,7 @@
 namespace pellucid {
 
 /// Copies bytes piece by piece, and gives the pages that they were in back to the system at once.
-/// What is left in `from` has no meaning.
+/// Leaves bytes without a meaning in `from`.
 inline void move_pages(std::span<std::byte> from, std::span<std::byte> to) {
   constexpr std::size_t piece = std::size_t{1} << 20;
   const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGE_SIZE));

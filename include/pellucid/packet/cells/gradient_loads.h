@@ -191,7 +191,7 @@ class GradientLoads {
   }
 
   /// The derivative along an axis at the corners, by the distance of two values (GradientKind).
-  /// Where no value is missing it is the same to the bit whatever other lanes have.
+  /// It does not depend on other lanes, not even by a bit, where no value is missing.
   CellCorners<F> derivative(int a, bool of_field) const noexcept {
     if (of_field || is_complete_) return derivative_inside(a, of_field);
     CellCorners<F> result;
