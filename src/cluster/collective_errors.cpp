@@ -5,8 +5,8 @@
 #include <new>
 #include <sstream>
 
-#include "checksum.h"
 #include "pellucid/cluster/render.h"
+#include "pellucid/io/internal/checksum.h"
 #include "pellucid/scene/error.h"
 #include "rank_work.h"
 

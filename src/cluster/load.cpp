@@ -8,11 +8,11 @@
 #include <string>
 #include <utility>
 
-#include "checksum.h"
 #include "pellucid/cluster/render.h"
 #include "pellucid/cluster/sub_scene.h"
 #include "pellucid/geometry/box_around.h"
 #include "pellucid/io/image_files.h"
+#include "pellucid/io/internal/checksum.h"
 #include "pellucid/scene/defaults.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/internal/box_corners.h"

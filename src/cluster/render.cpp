@@ -8,13 +8,13 @@
 #include <cstdint>
 #include <string>
 
-#include "checksum.h"
 #include "error_repair.h"
 #include "final_image.h"
 #include "frame_watch.h"
 #include "half_depths.h"
 #include "pellucid/base/version.h"
 #include "pellucid/cluster/sub_scene.h"
+#include "pellucid/io/internal/checksum.h"
 #include "pellucid/io/internal/scene_facts.h"
 #include "pellucid/scene/error.h"
 #include "rank_projections.h"

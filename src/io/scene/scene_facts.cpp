@@ -2,12 +2,11 @@
 #include "pellucid/io/internal/scene_facts.h"
 
 #include <array>
-#include <bit>
 #include <charconv>
-#include <cstdint>
 #include <type_traits>
 #include <utility>
 
+#include "pellucid/io/internal/checksum.h"
 #include "scene_fields.h"
 
 namespace pellucid {
@@ -30,27 +29,16 @@ std::string text_of(const std::optional<double>& number) {
   return number ? text_of(*number) : "none";
 }
 
-/// Checksum of numbers (FNV-1a).
-class Checksum {
- public:
-  void add(double number) { mix(std::bit_cast<std::uint64_t>(number)); }
-  void add(const Rgb<double>& color) {
-    for (const double part : {color.r, color.g, color.b}) add(part);
-  }
-  std::string text() const { return std::to_string(sum_); }
-
- private:
-  void mix(std::uint64_t bits) { sum_ = (sum_ ^ bits) * 1099511628211u; }
-
-  std::uint64_t sum_ = 14695981039346656037u;
-};
+void add(Checksum& sum, const Rgb<double>& color) {
+  for (const double part : {color.r, color.g, color.b}) sum.add(part);
+}
 
 void add(Checksum& sum, const TransferFunction& function) {
   for (const TransferFunction::Point& point : function.points()) {
     const auto& [value, extinction, color] = point;
     sum.add(value);
     sum.add(extinction);
-    sum.add(color);
+    add(sum, color);
   }
   sum.add(function.relative_error());
   sum.add(function.color_error());
@@ -71,7 +59,7 @@ void add(Checksum& sum, const GaussianPrimitive& primitive) {
     for (const double number : row) sum.add(number);
   }
   sum.add(extinction);
-  sum.add(color);
+  add(sum, color);
 }
 
 void add(Checksum& sum, const MultivariateTransferFunction& function) {
@@ -86,7 +74,7 @@ std::string checksum_of(const std::shared_ptr<const Function>& function) {
   if (!function) return "none";
   Checksum sum;
   add(sum, *function);
-  return sum.text();
+  return std::to_string(sum.value());
 }
 
 /// Adds the fields of a part (scene_fields.h) to a text, those too that files leave out.
@@ -170,7 +158,7 @@ std::string functions_of(const LabelContent& content) {
   if (!content.table) return "none";
   Checksum sum;
   add(sum, content.table->function());
-  return sum.text();
+  return std::to_string(sum.value());
 }
 template <class Content>  // a mesh, or a field of one's own
 std::string functions_of(const Content& content) {
@@ -204,7 +192,7 @@ std::string checksum_of(const Image& image) {
     for (const float part : pixel) sum.add(static_cast<double>(part));
   }
   for (const float depth : image.depth) sum.add(static_cast<double>(depth));
-  return sum.text();
+  return std::to_string(sum.value());
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace pellucid {
 
-/// Checksum that ranks compare in place of data that are too long to be sent to all (FNV-1a).
+/// Checksum that is compared in place of data that are too long to be sent or shown (FNV-1a).
 class Checksum {
  public:
   void add(std::string_view text) {
