@@ -12,8 +12,10 @@ import sys
 import weakref
 from typing import Any, Optional, Union
 
+from ._notebook import frame_name
 from ._notes import tell
-from ._pellucid import Error, ViewerServer, page_of_scene, reduced_page_of_scene
+from ._pellucid import (Error, ViewerServer, page_of_scene, page_without_scene,
+                        reduced_page_of_scene)
 from ._render import scene_of
 from .scene import Scene
 
@@ -23,7 +25,7 @@ _running: "weakref.WeakSet[Viewer]" = weakref.WeakSet()
 # Bytes of data, compressed, that a notebook takes unless it is told to.
 _MOST_EMBEDDED = 16_000_000
 # In a frame: the server where the notebook is of this machine and its page answers, else the page
-# itself, which needs none.
+# itself, which asks the kernel and can do without it.
 _FRAME = """<!doctype html><meta charset="utf-8"><style>body {{margin: 0}}
 iframe {{position: fixed; width: 100%; height: 100%; border: 0}}</style>
 <textarea hidden>{page}</textarea><script>
@@ -54,9 +56,10 @@ if (/^http:\\/\\/(localhost|127\\.0\\.0\\.1)(:|$)/.test(self.origin)) {{
 class Viewer:
     """A scene that is turned and edited in a page, on this machine alone; view() makes it.
 
-    In a notebook it shows itself as a frame. Letting go of it, stop() and the end of the program
-    end its page. It can be used in a `with` statement. What a notebook keeps of it shows the scene
-    as it was then, without this program.
+    In a notebook it shows itself as a frame, which reaches it through the kernel where the notebook
+    is of another machine. Letting go of it, stop() and the end of the program end its page. It can
+    be used in a `with` statement. What a notebook keeps of it shows the scene as it was then,
+    without this program.
     """
 
     def __init__(self, scene: Scene, port: int = 0, threads: int = 0, height: int = 600,
@@ -151,6 +154,9 @@ class Viewer:
         page = self._page()
         if page is None and not self.running:
             return "<p>This viewer was stopped.</p>"
+        name = frame_name(self, away=page is None) if self.running else None
+        if page is None and name is not None and self._embed is None:
+            page = _page_for_kernel()
         if page is None:
             source = f'src="{self.address}"'
         else:
@@ -158,12 +164,22 @@ class Viewer:
             address = json.dumps(self.address if self.running else "http://127.0.0.1:0/")
             frame = _FRAME.format(page=html.escape(page.decode(), quote=False), address=address)
             source = f'srcdoc="{html.escape(frame)}"'
+        if name is not None:
+            source += f' name="{name}"'
         return (f'<iframe {source} title="Pellucid" '
                 f'style="width: 100%; height: {self._height}px; border: 0" '
                 'referrerpolicy="no-referrer"></iframe>')
 
     def __repr__(self) -> str:
         return f"<pellucid.Viewer {'of a page' if self.running else 'that was stopped'}>"
+
+
+def _page_for_kernel() -> Optional[bytes]:
+    """A page whose data the kernel has; None: it was not built."""
+    try:
+        return page_without_scene()
+    except Error:
+        return None
 
 
 def view(data: Any, transfer_function: Any = None, *, open: Optional[bool] = None, port: int = 0,

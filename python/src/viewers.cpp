@@ -225,6 +225,9 @@ void bind_viewers(py::module_& module) {
              py::arg("most_bytes") = std::numeric_limits<std::uint64_t>::max(),
              "The bytes of a page of HTML that holds the scene. Raises Error, also where its data "
              "have more bytes.");
+  module.def(
+      "page_without_scene", [] { return py::bytes(empty_page()); },
+      "The bytes of a page of HTML that asks for a file. Raises Error.");
   module.def("reduced_page_of_scene", reduced_page_of_scene, py::arg("scene"),
              py::arg("most_bytes"),
              "A page likewise, with coarser data where it would have more bytes, and a line that "

@@ -23,7 +23,7 @@ def why_not():
     return None
 
 
-def make_browser(folder):
+def make_browser(folder, arguments=()):
     """Chromium without a window, with a profile of its own in the folder."""
     from selenium import webdriver
     from selenium.webdriver.chrome.options import Options
@@ -32,7 +32,7 @@ def make_browser(folder):
     options.binary_location = shutil.which("chromium")
     for argument in ("--headless=new", "--disable-gpu", "--hide-scrollbars",
                      "--disable-background-networking", "--no-first-run",
-                     f"--user-data-dir={os.path.join(folder, 'profile')}"):
+                     f"--user-data-dir={os.path.join(folder, 'profile')}", *arguments):
         options.add_argument(argument)
     if os.geteuid() == 0:
         options.add_argument("--no-sandbox")
@@ -44,8 +44,8 @@ class Page:
     """A browser with the page of a viewer, until the end of a with statement."""
 
     def __init__(self, viewer: Viewer, folder, window=(1280, 800), dark=False, scale=1,
-                 waits=True):
-        self.browser = make_browser(folder)
+                 waits=True, arguments=()):
+        self.browser = make_browser(folder, arguments)
         self.browser.set_script_timeout(SECONDS)
         self.folder = folder
         command = self.browser.execute_cdp_cmd

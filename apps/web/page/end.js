@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The other end of a page that is one file: a worker with the renderer. The page's own files are in
-// elements of it, in base 64 (apps/web/make_page.py).
+// The other end of a page that is one file: a worker with the renderer, or in a notebook whose kernel
+// answers, the viewer there (python/pellucid/_notebook.py). The page's own files are in elements of
+// it, in base 64 (apps/web/make_page.py).
 
 export const isProgram = false;
+/** Milliseconds in which a kernel answers that is to be used in the place of a worker. */
+const longestSilence = 3000;
 
 const needed = 'It takes WebAssembly with SIMD and exceptions: Chrome or Edge 97, Firefox 113, ' +
   'Safari 16.4, or later.';
@@ -42,11 +45,31 @@ function trouble(module) {
   return '';
 }
 
-/** The worker, as a socket is. */
-class WorkerSocket extends EventTarget {
+/** The other end, as a socket is. Its events are those of a WebSocket. */
+class EndSocket extends EventTarget {
   constructor() {
     super();
     this.readyState = WebSocket.CONNECTING;
+  }
+
+  receive(data) { this.dispatchEvent(new MessageEvent('message', {data})); }
+
+  open() {
+    this.readyState = WebSocket.OPEN;
+    this.dispatchEvent(new Event('open'));
+  }
+
+  end(reason) {
+    if (this.readyState === WebSocket.CLOSED) return;
+    this.readyState = WebSocket.CLOSED;
+    this.dispatchEvent(Object.assign(new Event('close'), {reason}));
+  }
+}
+
+/** A worker that renders in this page. */
+class WorkerSocket extends EndSocket {
+  constructor() {
+    super();
     this.answers = new Map();
     this.begin().catch((error) => this.end(error.message));
   }
@@ -67,7 +90,7 @@ class WorkerSocket extends EventTarget {
     const address = URL.createObjectURL(new Blob([script], {type: 'text/javascript'}));
     this.worker = new Worker(address);
     URL.revokeObjectURL(address);
-    this.worker.onmessage = ({data}) => this.receive(data);
+    this.worker.onmessage = ({data}) => this.answer(data);
     this.worker.onerror = (event) => this.end(event.message);
     const files = embeddedFiles().map(({name, size, bytes}) => ({name, size, bytes: bytes()}));
     for (const {name, size, bytes} of files) {
@@ -77,12 +100,11 @@ class WorkerSocket extends EventTarget {
       [module.buffer, ...files.map(({bytes}) => bytes.buffer)]);
   }
 
-  receive(data) {
+  answer(data) {
     if (typeof data === 'string' || data instanceof ArrayBuffer) {
-      this.dispatchEvent(new MessageEvent('message', {data}));
+      this.receive(data);
     } else if (data.ready) {
-      this.readyState = WebSocket.OPEN;
-      this.dispatchEvent(new Event('open'));
+      this.open();
     } else if (data.ended) {
       this.end(data.ended);
     } else if (data.copied) {
@@ -102,19 +124,126 @@ class WorkerSocket extends EventTarget {
   }
 
   end(why) {
-    if (this.readyState === WebSocket.CLOSED) return;
-    this.readyState = WebSocket.CLOSED;
     this.worker?.terminate();
     for (const answer of this.answers.values()) answer(why);
     this.answers.clear();
-    this.dispatchEvent(Object.assign(new Event('close'), {reason: why}));
+    super.end(why);
   }
+}
+
+/** What a notebook says of this frame: the viewer, and whether its data are in the kernel alone. */
+const frame = /^pellucid:(?<viewer>\w+)(?<away>:away)?$/.exec(self.name)?.groups;
+
+/** The kernel of the notebook around this frame (Jupyter Notebook 6); null: there is none. */
+function kernelAround() {
+  try {
+    return (frame && parent.Jupyter?.notebook?.kernel) ?? null;
+  } catch {
+    return null;  // of another origin
+  }
+}
+
+/** A viewer in a kernel, through its notebook: no port of the kernel's machine is needed. */
+class KernelSocket extends EndSocket {
+  constructor(kernel) {
+    super();
+    this.comm = kernel.comm_manager.new_comm('pellucid.viewer', {viewer: frame.viewer});
+    this.comm.on_msg(({content, buffers}) => this.answer(content.data, buffers ?? []));
+    const gone = () => this.end('The kernel of this notebook does not show this scene any more. ' +
+      'Run the cell again.');
+    this.comm.on_close(gone);
+    kernel.events.on('kernel_restarting.Kernel kernel_dead.Kernel', gone);
+    addEventListener('pagehide', () => {
+      kernel.events.off('kernel_restarting.Kernel kernel_dead.Kernel', gone);
+      this.close();
+    });
+  }
+
+  answer({text, ready}, [bytes]) {
+    if (ready) {
+      this.open();
+    } else if (text !== undefined) {
+      this.receive(text);
+    } else {
+      // Bytes of messages stand in the middle of memory that several have.
+      this.receive(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength));
+    }
+  }
+
+  send(text) { this.comm.send({text}); }
+
+  copy() {
+    return Promise.reject(new Error('This frame shows data of the kernel: open a file in a cell, ' +
+      'by pellucid.view().'));
+  }
+
+  close() {
+    try {
+      this.comm.close();
+    } catch {
+      // The kernel is gone.
+    }
+  }
+}
+
+/** The kernel where it answers, else a worker. */
+class ChosenSocket extends EndSocket {
+  constructor() {
+    super();
+    const kernel = kernelAround();
+    try {
+      if (kernel) return void this.ask(kernel);
+    } catch {
+      // It is not connected.
+    }
+    this.work();
+  }
+
+  /** Passes on what the other end has to say. @param {EndSocket} end */
+  take(end) {
+    this.other = end;
+    end.addEventListener('message', ({data}) => this.receive(data));
+    end.addEventListener('open', () => this.open());
+    end.addEventListener('close', ({reason}) => this.end(reason));
+  }
+
+  ask(kernel) {
+    const socket = new KernelSocket(kernel);
+    // Only a worker can take the place of a kernel that is busy or does not know the viewer.
+    const timer = frame.away ? 0 : setTimeout(() => socket.end(), longestSilence);
+    const first = new AbortController();
+    socket.addEventListener('open', () => {
+      clearTimeout(timer);
+      first.abort();
+      this.take(socket);
+      this.open();
+    }, {once: true});
+    socket.addEventListener('close', () => {
+      clearTimeout(timer);
+      socket.close();
+      this.work();
+    }, {signal: first.signal});
+  }
+
+  work() {
+    if (frame?.away) {
+      // Whoever made this socket hears of its end.
+      setTimeout(() => this.end('The data of this frame are in the kernel of its notebook, which ' +
+        'does not answer. Run the cell again, or keep them in the notebook: view(…, embed=True).'));
+    } else {
+      this.take(new WorkerSocket());
+    }
+  }
+
+  send(text) { this.other?.send(text); }
+
+  copy(path, bytes) { return this.other.copy(path, bytes); }
 }
 
 let socket = null;
 
 export function openSocket() {
-  socket = new WorkerSocket();
+  socket = new ChosenSocket();
   return socket;
 }
 

@@ -39,6 +39,9 @@ EmbeddedScene embed_scene(const SceneDescription& description, const Scene& scen
 /// of was not built (scripts/build-web) or is of another version.
 std::string page_of(const EmbeddedScene& scene);
 
+/// Returns the page without a scene, which asks for a file. Throws Error likewise.
+std::string empty_page();
+
 /// Page whose data may be coarser than those of its scene.
 struct ReducedPage {
   std::string page;

@@ -49,13 +49,18 @@ void append_file(std::string& text, const EmbeddedFile& file) {
 
 }  // namespace
 
-std::string page_of(const EmbeddedScene& scene) {
+std::string empty_page() {
   const std::filesystem::path path = module_file(page);
-  const std::string empty = read_text_file(path);
-  const std::size_t at = empty.find(mark);
-  if (at == empty.npos) {
+  std::string text = read_text_file(path);
+  if (text.find(mark) == text.npos) {
     throw Error(path.string() + ": is no page for scenes; run scripts/build-web again");
   }
+  return text;
+}
+
+std::string page_of(const EmbeddedScene& scene) {
+  const std::string empty = empty_page();
+  const std::size_t at = empty.find(mark);
   std::string text = empty.substr(0, at);
   append_file(text, {"scene.json", scene.scene});
   for (const EmbeddedFile& file : scene.files) append_file(text, file);
