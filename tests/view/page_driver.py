@@ -9,6 +9,51 @@ import time
 from viewer_process import Viewer
 
 SECONDS = 90
+# Moves the pointer over an element for some seconds, with each picture of the screen. Gives how
+# many frames were shown a second, the milliseconds until an exact one at rest, and how many pixels
+# the traced ones were apart.
+DRAG = """
+const [selector, seconds, done] = arguments;
+const target = document.querySelector(selector);
+const box = target.getBoundingClientRect();
+const x = box.left + box.width / 2, y = box.top + box.height / 2;
+const event = (type, i) => target.dispatchEvent(new PointerEvent(type, {bubbles: true,
+  pointerId: 1, button: type === 'pointermove' ? -1 : 0, buttons: type === 'pointerup' ? 0 : 1,
+  clientX: x + 60 * Math.sin(i / 12), clientY: y + 20 * Math.cos(i / 17), cancelable: true}));
+target.setPointerCapture = () => {};
+document.querySelectorAll('.plot svg').forEach((svg) => { svg.setPointerCapture = () => {}; });
+let i = 0, shown = 0, strides = 0, last = document.body.dataset.frame;
+const start = performance.now();
+// The points are drawn anew while they move; their plot stays.
+const mover = target.closest('.plot svg') ?? target;
+event('pointerdown', 0);
+const step = () => {
+  if (document.body.dataset.frame !== last) {
+    ++shown;
+    last = document.body.dataset.frame;
+    strides += Number(document.body.dataset.stride);
+  }
+  const now = performance.now();
+  if (now - start < seconds * 1000) {
+    mover.dispatchEvent(new PointerEvent('pointermove', {bubbles: true, pointerId: 1, button: -1,
+      buttons: 1, clientX: x + 60 * Math.sin(++i / 12), clientY: y + 20 * Math.cos(i / 17)}));
+    requestAnimationFrame(step);
+    return;
+  }
+  mover.dispatchEvent(new PointerEvent('pointerup', {bubbles: true, pointerId: 1, button: 0}));
+  const rest = performance.now();
+  const wait = () => {
+    if (document.body.dataset.state === 'exact') {
+      done([shown / seconds, performance.now() - rest, strides / Math.max(shown, 1)]);
+    } else {
+      setTimeout(wait, 2);
+    }
+  };
+  // The state is still that of a frame before the last move where it is exact at once.
+  setTimeout(wait, 60);
+};
+requestAnimationFrame(step);
+"""
 
 
 def why_not():
