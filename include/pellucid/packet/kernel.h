@@ -7,7 +7,7 @@
 /// written within extern "C" outside of namespace pellucid.
 #define PELLUCID_KERNEL(name, Job) \
   using name##_job = Job;          \
-  PELLUCID_DECLARE_ENTRIES(void, name, (Job * job))
+  PELLUCID_DECLARE_ENTRIES(void, name, (name##_job * job))
 
 /// PELLUCID_DEFINE_KERNEL(name) { … } defines it, in a source that is compiled once per set, with
 /// the job as `job`.

@@ -106,6 +106,7 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads, 
   const LayerSetting setting(integration, wanted, negligible_extinction(layers, wanted),
                              lit ? scene.lights : std::vector<Light>{}, options);
   std::vector<ClippedLayer> clipped;
+  clipped.reserve(layers.size());
   for (const Layer* layer : layers) {
     clipped.push_back({kept.find(*layer, setting, threads), clips_of(*layer, scene.clips)});
   }
@@ -118,6 +119,7 @@ Frame::Frame(const Scene& described, const RenderOptions& options, int threads, 
   }
   if (projections.empty()) return;
   std::vector<Layer> in_place;
+  in_place.reserve(projections.size());
   for (const Layer* layer : projections) in_place.push_back(moved_into_place(*layer));
   auto projecting =
       std::make_unique<const ProjectedTracer>(std::move(in_place), std::move(tracer), scene.clips,

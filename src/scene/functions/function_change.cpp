@@ -23,7 +23,7 @@ double value_of(const RangeEnd& end, const std::vector<double>& sample) {
   }
   if (sample.empty()) throw Error("range: the data have no finite value for " + text_of(end));
   const double at = end.number / 100 * static_cast<double>(sample.size() - 1);
-  return sample[std::min(static_cast<std::size_t>(at + 0.5), sample.size() - 1)];
+  return sample[std::min(static_cast<std::size_t>(std::lround(at)), sample.size() - 1)];
 }
 
 template <class Data>
@@ -85,10 +85,12 @@ std::vector<OpacityPoint> changed(const std::vector<OpacityPoint>& points,
                                   const std::optional<std::array<double, 2>>& range) {
   // An opacity is linear between the points as an extinction is.
   std::vector<TransferFunction::Point> as_points;
+  as_points.reserve(points.size());
   for (const OpacityPoint& p : points) as_points.push_back({p.value, p.opacity, p.color});
   const FunctionChange colors{change.colors, change.range, 1};
   const TransferFunction function = changed(TransferFunction(std::move(as_points)), colors, range);
   std::vector<OpacityPoint> made;
+  made.reserve(function.points().size());
   for (const TransferFunction::Point& p : function.points()) {
     made.push_back({p.value, std::min(p.extinction, 1.0), p.color});
   }

@@ -40,6 +40,7 @@ VolumeData values_at(const DataArray<Value>& data, std::size_t count, std::size_
 ChannelSample sample_channels(const Channels& channels, const std::vector<int>& which,
                               std::size_t most, const ParallelFor& parallel) {
   std::vector<Channel> chosen;
+  chosen.reserve(which.size());
   for (const int c : which) chosen.push_back(channels[c]);
   const std::size_t all =
       std::visit([](const auto& data) { return data.size(); }, channels.grid().data());

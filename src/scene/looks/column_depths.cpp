@@ -32,6 +32,7 @@ void for_each(const ParallelFor& parallel, std::size_t count,
 
 std::vector<std::size_t> Columns::Slab::places(std::size_t along) const {
   std::vector<std::size_t> places;
+  places.reserve(static_cast<std::size_t>(count[along]));
   for (int i = 0; i < count[along]; ++i) {
     places.push_back(stride[along] * middle_of(i, count[along], size[along]));
   }

@@ -278,6 +278,7 @@ std::vector<GaussianPrimitive> suggest_mixture(const Channels& channels,
   const WeightedPoints points = points_besides(background, data.bins);
   if (points.weights.empty()) return haze(stage, parallel, control);
   std::vector<double> floor;
+  floor.reserve(axes.size());
   for (const HistogramAxis& axis : axes) floor.push_back(least_variance(axis));
   // More than these are hard to tell apart, and the criterion would have as many as it may: no
   // tissue is normally distributed.

@@ -114,7 +114,7 @@ LagrangeNodes::LagrangeNodes(CellShape shape, const std::int32_t* layout)
                     static_cast<std::size_t>(side_[2]),
                 -1);
   const auto node = [&](int i, int j, int k) -> int& {
-    return nodes_[static_cast<std::size_t>(i + side_[0] * (j + side_[1] * k))];
+    return nodes_[index(i, j, k)];
   };
   if (shape == CellShape::lagrange_tetrahedron) {
     for (int n = 0; n < count; ++n) {

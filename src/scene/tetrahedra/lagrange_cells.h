@@ -26,15 +26,20 @@ class LagrangeNodes {
 
   /// Returns the node at (i, j, k) of the lattice. Of a tetrahedron they are the weights of the
   /// corners 1, 2 and 3; of a wedge those of the corners 1 and 2, and the layer.
-  int operator()(int i, int j, int k) const noexcept {
-    return nodes_[static_cast<std::size_t>(i + side_[0] * (j + side_[1] * k))];
-  }
+  int operator()(int i, int j, int k) const noexcept { return nodes_[index(i, j, k)]; }
   int order(int axis) const noexcept { return side_[axis] - 1; }
   /// Returns whether triangles and the cell have a node in their middle beside those of the
   /// lattice.
   bool has_middles() const noexcept { return has_middles_; }
 
  private:
+  std::size_t index(int i, int j, int k) const noexcept {
+    return static_cast<std::size_t>(i) +
+           static_cast<std::size_t>(side_[0]) *
+               (static_cast<std::size_t>(j) +
+                static_cast<std::size_t>(side_[1]) * static_cast<std::size_t>(k));
+  }
+
   int side_[3];
   bool has_middles_ = false;
   std::vector<int> nodes_;
