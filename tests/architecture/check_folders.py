@@ -21,9 +21,7 @@ SUFFIXES = (".h", ".cpp", ".cu", ".py", ".js")
 TOP = ("apps", "benchmarks", "examples", "include", "plugins", "python", "src", "tests", "tools")
 
 # Folders with more files, and how many they may have.
-LARGE = {
-    "src/cpu/layers": 44,
-}
+LARGE = {}
 # Folders of more than ten files that have no README.md.
 UNEXPLAINED = {
     "apps/view/page",

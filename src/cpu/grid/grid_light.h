@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "layers/grid_gradient.h"
 #include "layers/layer_appearance.h"
 #include "pellucid/packet/interface.h"
 #include "pellucid/packet/light.h"
@@ -15,6 +14,7 @@
 #include "pellucid/render/integrate_cell.h"
 #include "pellucid/scene/internal/binned_transfer_storage.h"
 #include "pellucid/scene/scene.h"
+#include "sources/grid_gradient.h"
 
 namespace pellucid {
 

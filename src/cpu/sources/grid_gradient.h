@@ -3,12 +3,12 @@
 
 #include <vector>
 
+#include "layers/plane_ambiguity.h"
 #include "pellucid/field/grid_gradient.h"
 #include "pellucid/field/sample.h"
 #include "pellucid/scene/light.h"
 #include "pellucid/scene/volume.h"
 #include "pellucid/traverse/structured_walk.h"
-#include "plane_ambiguity.h"
 
 namespace pellucid {
 

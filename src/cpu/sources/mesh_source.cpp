@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "layers/mesh_gradient.h"
-#include "layers/variables_source.h"
 #include "mesh/mesh_field_storage.h"
 #include "mesh/mesh_hits.h"
+#include "mesh_gradient.h"
 #include "pellucid/render/integrate_mesh_ray.h"
+#include "variables_source.h"
 
 namespace pellucid {
 namespace {

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "layer_stream.h"
+#include "layers/layer_stream.h"
+#include "layers/plane_ambiguity.h"
 #include "pellucid/traverse/block_walk.h"
 #include "pellucid/traverse/structured_walk.h"
-#include "plane_ambiguity.h"
 
 namespace pellucid {
 

@@ -9,13 +9,13 @@
 #include "grid_gradient.h"
 #include "grid_points.h"
 #include "grid_stream.h"
+#include "layers/plane_ambiguity.h"
 #include "packet_setup.h"
 #include "pellucid/render/integrate_multivariate_ray.h"
 #include "pellucid/scene/internal/block_classes_storage.h"
 #include "pellucid/scene/internal/label_axes.h"
 #include "pellucid/scene/internal/multivariate_blocks_storage.h"
 #include "pellucid/scene/internal/transfer_tables_storage.h"
-#include "plane_ambiguity.h"
 
 namespace pellucid {
 namespace {

@@ -6,10 +6,10 @@
 #include <unordered_map>
 
 #include "grid_stream.h"
+#include "layers/plane_ambiguity.h"
 #include "pellucid/scene/internal/block_classes_storage.h"
 #include "pellucid/scene/internal/label_axes.h"
 #include "pellucid/scene/internal/transfer_tables_storage.h"
-#include "plane_ambiguity.h"
 
 namespace pellucid {
 namespace {

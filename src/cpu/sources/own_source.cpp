@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "interval_near.h"
+#include "layers/interval_near.h"
 #include "pellucid/render/integrate_mesh_ray.h"
 #include "pellucid/scene/error.h"
 #include "variables_source.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "layer_points.h"
+#include "layers/layer_points.h"
 #include "pellucid/traverse/block_walk.h"
 
 namespace pellucid {
