@@ -22,7 +22,7 @@
 #include "pellucid/io/read_volume.h"
 #include "pellucid/io/write_mesh.h"
 #include "pellucid/io/write_volume.h"
-#include "pellucid/scene/cut_cells.h"
+#include "pellucid/scene/tetrahedralize.h"
 #include "render/progress.h"
 
 namespace pellucid::cli {

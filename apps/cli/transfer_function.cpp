@@ -30,7 +30,7 @@ struct TransferFunctionArguments {
 LookDescription read(const TransferFunctionArguments& arguments, double deviation,
                      std::vector<std::string>& notes) {
   const std::string text = read_text_file(arguments.input);
-  if (is_foreign_transfer_function(text)) {
+  if (needs_import(text)) {
     const ImportedTransferFunction imported =
         import_transfer_function(text, arguments.input, arguments.import.options(deviation));
     notes = import_lines(imported, arguments.input);

@@ -9,7 +9,7 @@
 #include "benchmarks/support/interleave.h"
 #include "pellucid/cpu/threads.h"
 #include "pellucid/field/tetrahedra.h"
-#include "pellucid/scene/cut_cells.h"
+#include "pellucid/scene/tetrahedralize.h"
 
 namespace pellucid::bench {
 namespace {

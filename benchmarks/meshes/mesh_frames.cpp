@@ -9,7 +9,7 @@
 #include "benchmarks/vtk/unstructured.h"
 #include "pellucid/cpu/render.h"
 #include "pellucid/cpu/threads.h"
-#include "pellucid/scene/cut_cells.h"
+#include "pellucid/scene/tetrahedralize.h"
 #include "tests/support/one_layer.h"
 
 namespace pellucid::bench {

@@ -9,7 +9,7 @@
 #include "benchmarks/support/document.h"
 #include "benchmarks/vtk/delaunay.h"
 #include "pellucid/scene/builtin_fields.h"
-#include "pellucid/scene/cut_cells.h"
+#include "pellucid/scene/tetrahedralize.h"
 #include "tests/scenes/peers.h"
 #include "tests/support/one_layer.h"
 

@@ -9,7 +9,7 @@
 
 #include "pellucid/cpu/render.h"
 #include "pellucid/cpu/threads.h"
-#include "pellucid/scene/cut_cells.h"
+#include "pellucid/scene/tetrahedralize.h"
 #include "tests/scenes/cameras.h"
 #include "tests/scenes/real.h"
 #include "tests/support/one_layer.h"

@@ -15,8 +15,8 @@
 #include <string>
 
 #include "grid_data.h"
-#include "pellucid/scene/cut_cells.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/tetrahedralize.h"
 #include "vtk/module/vtk_gather.h"
 
 namespace pellucid::plugin {

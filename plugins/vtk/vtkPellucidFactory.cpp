@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "mapper_core.h"
-#include "stand_ins.h"
+#include "override_mappers.h"
 
 namespace {
 
@@ -45,10 +45,10 @@ vtkStandardNewMacro(vtkPellucidFactory)
                           vtkObjectFactory::CreateFunction make) {
     this->RegisterOverride(name, with, "volumes to a stated error", 1, make);
   };
-  add(gpu, "GpuStandIn",
-      [] { return static_cast<vtkObject*>(pellucid::plugin::new_gpu_stand_in()); });
-  add(tetrahedra, "TetrahedraStandIn", [] {
-    return static_cast<vtkObject*>(pellucid::plugin::new_projected_tetrahedra_stand_in());
+  add(gpu, "GpuOverride",
+      [] { return static_cast<vtkObject*>(pellucid::plugin::new_gpu_override()); });
+  add(tetrahedra, "TetrahedraOverride", [] {
+    return static_cast<vtkObject*>(pellucid::plugin::new_projected_tetrahedra_override());
   });
 }
 
@@ -116,13 +116,13 @@ PELLUCID_VTK_EXPORT const char* vtkGetFactoryVersion() {
 
 // For vtkPellucidPreload.
 PELLUCID_VTK_EXPORT vtkFixedPointVolumeRayCastMapper* pellucid_vtk_new_fixed_point() {
-  return pellucid::plugin::new_fixed_point_stand_in();
+  return pellucid::plugin::new_fixed_point_override();
 }
 PELLUCID_VTK_EXPORT vtkUnstructuredGridVolumeRayCastMapper* pellucid_vtk_new_ray_cast() {
-  return pellucid::plugin::new_ray_cast_stand_in();
+  return pellucid::plugin::new_ray_cast_override();
 }
 PELLUCID_VTK_EXPORT vtkUnstructuredGridVolumeZSweepMapper* pellucid_vtk_new_z_sweep() {
-  return pellucid::plugin::new_z_sweep_stand_in();
+  return pellucid::plugin::new_z_sweep_override();
 }
 
 // For Python's ctypes.

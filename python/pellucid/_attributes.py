@@ -11,7 +11,7 @@ from typing import Any, List, Mapping, NamedTuple, Optional, Tuple
 import numpy
 
 from ._notes import tell
-from ._pellucid import foreign_names
+from ._pellucid import other_conventions
 
 
 def scaled(stored: numpy.ndarray, slope: float, intercept: float) -> numpy.ndarray:
@@ -89,8 +89,8 @@ def tell_unapplied(data: Any, name: str) -> None:
             tell(f"{name}: its {key} is no {what} and is not applied")
     if any(key in attributes for key in ("flag_values", "flag_meanings", "flag_masks")):
         tell(f"{name}: its values are labels (flag_values) and no amounts")
-    unread = foreign_names([str(key).encode("utf-8", "replace").decode()
-                            for key in attributes.keys() if key not in _KINDS])
+    unread = other_conventions([str(key).encode("utf-8", "replace").decode()
+                                for key in attributes.keys() if key not in _KINDS])
     if unread:
         tell(f"{name}: has attributes that are not applied ({', '.join(unread)})")
 

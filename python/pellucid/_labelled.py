@@ -10,8 +10,8 @@ import numpy
 
 from . import _masks
 from ._notes import tell
-from ._pellucid import (Error, axis_roles, foreign_names, grows_downwards, space_axes, unit_factors,
-                        unwrapped_longitudes)
+from ._pellucid import (Error, axis_roles, grows_downwards, other_conventions, space_axes,
+                        unit_factors, unwrapped_longitudes)
 from ._places import Placed, three_axes
 
 
@@ -179,7 +179,7 @@ def _tell_beside(data: Any, known: Set[str], name: str) -> None:
                 continue
             is_along = key.lower() in ("x", "y", "z") and other.shape in [(n,) for n in data.shape]
             is_small = numpy.prod(other.shape, dtype=float) <= 64
-            if is_along or (is_small and foreign_names([key])):
+            if is_along or (is_small and other_conventions([key])):
                 beside.append(key)
         group = None if group.name == "/" else group.parent
     if beside:

@@ -102,7 +102,7 @@ Units are names or symbols of lengths; "" if there is none.)");
   module.def("unwrapped_longitudes", &unwrapped_longitudes, py::arg("unit"), py::arg("positions"),
              R"(
 Returns positions in degrees that jump once by 360 going on; None for others.)");
-  module.def("foreign_names", &foreign_names, py::arg("names"), R"(
+  module.def("other_conventions", &other_conventions, py::arg("names"), R"(
 Returns those of the names of attributes by which other programs call scales, missing values and
 placements.)");
   module.def("grows_downwards", &grows_downwards, py::arg("axis"), R"(

@@ -53,7 +53,7 @@ void bind_meshes(py::module_& module);
 void bind_transfer_functions(py::module_& module);
 void bind_color_maps(py::module_& module);
 void bind_gaussians(py::module_& module);
-void bind_foreign_functions(py::module_& module);
+void bind_imported_functions(py::module_& module);
 void bind_histograms(py::module_& module);
 void bind_looks(py::module_& module);
 void bind_scenes(py::module_& module);

@@ -8,7 +8,7 @@
 #include "handles.h"
 #include "meshes/mesh_blocks.h"
 #include "pellucid/io/mesh_source.h"
-#include "pellucid/scene/cut_cells.h"
+#include "pellucid/scene/tetrahedralize.h"
 #include "vtk/vtk_cells.h"
 
 namespace pellucid::python {

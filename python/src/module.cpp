@@ -19,7 +19,7 @@ PYBIND11_MODULE(_pellucid, module) {
   bind_meshes(module);
   bind_color_maps(module);
   bind_gaussians(module);
-  bind_foreign_functions(module);
+  bind_imported_functions(module);
   bind_histograms(module);
   bind_images(module);
   bind_scenes(module);

@@ -45,7 +45,7 @@ std::vector<double> mesh_times(const std::filesystem::path& path, const MeshRead
 
 // Transfer functions of other programs.
 
-bool is_foreign_transfer_function(std::string_view) {
+bool needs_import(std::string_view) {
   return false;
 }
 

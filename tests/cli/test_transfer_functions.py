@@ -23,7 +23,7 @@ class TransferFunctions(ProgramTest):
         self.write("maps.json", json.dumps(COOL_TO_WARM))
         self.write("half.npy", constant(0.5))
 
-    def test_render_takes_a_foreign_function(self):
+    def test_render_takes_another_programs_function(self):
         # Opacity 1/2 per unit distance over three units, seen along an axis: 1 - 1/8 of (0.5, 0,
         # 0.5).
         result = self.run_program("render", "half.npy", "--tf", "maps.json", "--map", "plain",

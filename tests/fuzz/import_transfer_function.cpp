@@ -24,7 +24,7 @@ void require(bool condition) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(data, data + size);
-  pellucid::is_foreign_transfer_function(text);
+  pellucid::needs_import(text);
   pellucid::ImportOptions options;
   options.deviation = 0.05;
   try {

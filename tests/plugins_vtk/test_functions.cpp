@@ -12,10 +12,10 @@
 #include <numbers>
 
 #include "mapper_core.h"
+#include "override_mappers.h"
 #include "pellucid/cpu/render.h"
 #include "pellucid/scene/error.h"
 #include "settings.h"
-#include "stand_ins.h"
 #include "tests/plugins_vtk/stage.h"
 #include "vtkPellucidVolumeMapper.h"
 
@@ -252,7 +252,7 @@ TEST(VtkFunctions, EmptyOnesAreVtksRamps) {
   EXPECT_EQ(opacity->GetSize(), 0);
   // The fixed-point mapper shows them as 0.
   const vtkSmartPointer<vtkFixedPointVolumeRayCastMapper> fixed =
-      vtkSmartPointer<vtkFixedPointVolumeRayCastMapper>::Take(plugin::new_fixed_point_stand_in());
+      vtkSmartPointer<vtkFixedPointVolumeRayCastMapper>::Take(plugin::new_fixed_point_override());
   fixed->SetInputData(strip.mapper->GetInput());
   const Scene scene =
       plugin::core_of(fixed)->scene_of(*fixed, {}, *strip.stage.renderer, *strip.volume);
@@ -261,22 +261,22 @@ TEST(VtkFunctions, EmptyOnesAreVtksRamps) {
 }
 
 TEST(VtkFunctions, UnknownColorSpacesAreRefused) {
-  foreign::ShapedFunction function;
+  imported::ShapedFunction function;
   function.is_color = true;
   function.space = 6;  // of VTK 9.4
   function.nodes = {{0, {0, 0, 0}}, {1, {1, 1, 1}}};
-  EXPECT_THROW(foreign::fit(function, 1e-3), Error);
+  EXPECT_THROW(imported::fit(function, 1e-3), Error);
 }
 
 TEST(VtkFunctions, WhatVtkDoesOtherwiseIsCounted) {
-  foreign::ShapedFunction function;
+  imported::ShapedFunction function;
   function.nodes = {{0, {0.2, 0.2, 0.2}}, {1, {0.4, 0.4, 0.4}}};
   function.is_color = true;
   const auto own = [](double first, double, int) -> std::vector<Rgb<double>> {
     const double value = 0.2 + 0.2 * first + 0.01 * first * (1 - first);
     return {{value, value, value}};
   };
-  const FittedCurve curve = foreign::fit(function, 1e-3, {}, own);
+  const FittedCurve curve = imported::fit(function, 1e-3, {}, own);
   EXPECT_GE(curve.deviation, 0.0025);
 }
 

@@ -11,7 +11,7 @@
 #include <array>
 
 #include "mapper_core.h"
-#include "stand_ins.h"
+#include "override_mappers.h"
 #include "tests/plugins_vtk/stage.h"
 #include "vtkPellucidVolumeMapper.h"
 
@@ -36,11 +36,11 @@ vtkProp* found_at(Stage& stage, double x, double y) {
 }
 
 TEST(Picking, FindsVolumesAndWhatIsInFrontOfThem) {
-  const vtkSmartPointer<vtkGPUVolumeRayCastMapper> stand_in =
-      vtkSmartPointer<vtkGPUVolumeRayCastMapper>::Take(plugin::new_gpu_stand_in());
+  const vtkSmartPointer<vtkGPUVolumeRayCastMapper> override_mapper =
+      vtkSmartPointer<vtkGPUVolumeRayCastMapper>::Take(plugin::new_gpu_override());
   const auto own = vtkSmartPointer<vtkPellucidVolumeMapper>::New();
-  for (vtkVolumeMapper* const mapper :
-       {static_cast<vtkVolumeMapper*>(stand_in.Get()), static_cast<vtkVolumeMapper*>(own.Get())}) {
+  for (vtkVolumeMapper* const mapper : {static_cast<vtkVolumeMapper*>(override_mapper.Get()),
+                                        static_cast<vtkVolumeMapper*>(own.Get())}) {
     Stage stage(96, 64);
     mapper->SetInputDataObject(ball_image());
     vtkVolume* const volume = stage.add(mapper, soft_property());

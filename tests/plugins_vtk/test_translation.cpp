@@ -23,7 +23,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double inf = std::numeric_limits<double>::infinity();
 constexpr RampRange data_range = std::array<double, 2>{2, 10};
 
-FunctionSettings function_of(std::vector<foreign::ShapedNode> nodes) {
+FunctionSettings function_of(std::vector<imported::ShapedNode> nodes) {
   FunctionSettings function;
   function.shape.nodes = std::move(nodes);
   return function;

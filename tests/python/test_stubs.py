@@ -53,9 +53,10 @@ def test_arguments_are_the_modules():
 
 
 def test_everything_public_is_in_the_package():
-    hidden = {"ViewerServer", "axis_roles", "changed_function", "choose_look", "foreign_names",
+    hidden = {"ViewerServer", "axis_roles", "changed_function", "choose_look",
               "grey_colors", "grows_downwards", "is_color_map", "linear_color", "look_lights",
-              "page_of_scene", "page_without_scene", "reduced_page_of_scene",
+              "other_conventions", "page_of_scene", "page_without_scene",
+              "reduced_page_of_scene",
               "picture_advice", "save_scene", "space_axes", "surface_advice", "unit_factors",
               "unwrapped_longitudes"} | KERNELS
     has = {name for name in vars(_pellucid) if not name.startswith("_")}
@@ -80,9 +81,10 @@ def test_arguments_are_the_modules():
 
 
 def test_everything_public_is_in_the_package():
-    hidden = {"ViewerServer", "axis_roles", "changed_function", "choose_look", "foreign_names",
+    hidden = {"ViewerServer", "axis_roles", "changed_function", "choose_look",
               "grey_colors", "grows_downwards", "is_color_map", "linear_color", "look_lights",
-              "page_of_scene", "page_without_scene", "reduced_page_of_scene",
+              "other_conventions", "page_of_scene", "page_without_scene",
+              "reduced_page_of_scene",
               "picture_advice", "save_scene", "space_axes", "surface_advice", "unit_factors",
               "unwrapped_longitudes"} | KERNELS
     has = {name for name in vars(_pellucid) if not name.startswith("_")} - hidden

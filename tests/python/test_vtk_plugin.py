@@ -360,7 +360,7 @@ import vtkmodules.all as vtk
 for name in ("vtkGPUVolumeRayCastMapper", "vtkProjectedTetrahedraMapper",
              "vtkFixedPointVolumeRayCastMapper", "vtkUnstructuredGridVolumeRayCastMapper",
              "vtkUnstructuredGridVolumeZSweepMapper"):
-    print("StandIn" in getattr(vtk, name)().GetClassName())
+    print("Override" in getattr(vtk, name)().GetClassName())
 """
 
 

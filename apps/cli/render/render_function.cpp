@@ -72,7 +72,7 @@ void set_transfer_function(const RenderArguments& arguments, SceneDescription& d
     return;
   }
   const std::string text = file.empty() ? "" : read_text_file(file);
-  if (!file.empty() && is_foreign_transfer_function(text)) {
+  if (!file.empty() && needs_import(text)) {
     const ImportedTransferFunction imported =
         import_transfer_function(text, file, import_options(arguments, description));
     LayerDescription& layer = description.layers.front();

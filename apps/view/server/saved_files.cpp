@@ -72,7 +72,7 @@ SavedFile function_file(const LayerDescription& layer, const std::string& format
 }
 
 LookDescription read_function(const ImportFunction& import, std::vector<std::string>& notes) {
-  if (!is_foreign_transfer_function(import.text)) return parse_look(import.text, import.name);
+  if (!needs_import(import.text)) return parse_look(import.text, import.name);
   const ImportedTransferFunction imported = import_transfer_function(import.text, import.name);
   notes = imported.notes;
   return {imported.table, imported.shading, imported.gradient_opacity};

@@ -62,7 +62,7 @@ struct ImportedTransferFunction {
 /// | ANARI transferFunction1D, JSON | the specification, 4.5; positions as VisRTX has them |
 /// | color tables, CSV | rows r,g,b[,a] or value,r,g,b[,a] |
 ///
-/// src/io/transfer_functions/foreign_curves.h has the formulas with their sources. `name` (the
+/// src/io/transfer_functions/import_curves.h has the formulas with their sources. `name` (the
 /// file's) opens every message. Throws Error, with one line that names the position, if the text
 /// has none of these formats, or numbers are not finite, not in order or out of range.
 ImportedTransferFunction import_transfer_function(std::string_view text, const std::string& name,
@@ -70,8 +70,8 @@ ImportedTransferFunction import_transfer_function(std::string_view text, const s
 /// Reads the same from a file of at most 64 MiB.
 ImportedTransferFunction import_transfer_function(const std::filesystem::path& file,
                                                   const ImportOptions& options = {});
-/// Returns whether the text is not in our own format (parse_transfer_function()), judged by its
-/// top-level keys.
-bool is_foreign_transfer_function(std::string_view text);
+/// Returns whether a text is for import_transfer_function() and not in our own format
+/// (parse_transfer_function()), judged by its top-level keys.
+bool needs_import(std::string_view text);
 
 }  // namespace pellucid

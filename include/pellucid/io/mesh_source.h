@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "pellucid/io/read_mesh.h"
-#include "pellucid/scene/cut_cells.h"
+#include "pellucid/scene/tetrahedralize.h"
 
 namespace pellucid {
 

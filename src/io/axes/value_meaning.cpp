@@ -191,7 +191,7 @@ std::string bare_name(const std::string& name) {
   return bare;
 }
 
-/// Lists foreign_names() of attributes. Those that are applied are not among them.
+/// Lists other_conventions() of attributes. Those that are applied are not among them.
 std::string unread_of(const VariableAttributes& attributes) {
   constexpr auto applied =
       std::to_array<std::string_view>({"scale_factor", "add_offset", "_FillValue", "missing_value",
@@ -201,7 +201,8 @@ std::string unread_of(const VariableAttributes& attributes) {
     if (std::ranges::find(applied, name) == applied.end()) names.push_back(name);
   }
   std::string list;
-  for (const std::string& name : foreign_names(names)) list += (list.empty() ? "" : ", ") + name;
+  for (const std::string& name : other_conventions(names))
+    list += (list.empty() ? "" : ", ") + name;
   return list;
 }
 
@@ -268,8 +269,8 @@ std::string note_of(const DefaultFills& fills, const std::string& name) {
          " missing";
 }
 
-std::vector<std::string> foreign_names(const std::vector<std::string>& names) {
-  constexpr auto foreign = std::to_array<std::string_view>(
+std::vector<std::string> other_conventions(const std::vector<std::string>& names) {
+  constexpr auto known = std::to_array<std::string_view>(
       {"scalefactor",    "scale",        "scales",      "slope",
        "gain",           "multiplier",   "offset",      "addoffset",
        "intercept",      "bias",         "calibration", "missingvalue",
@@ -282,7 +283,7 @@ std::vector<std::string> foreign_names(const std::vector<std::string>& names) {
        "axes",           "axisorder",    "axisnames",   "dims",
        "dimensions",     "elementsizeum"});
   std::vector<std::string> found;
-  for (const std::string_view bare : foreign) {
+  for (const std::string_view bare : known) {
     for (const std::string& name : names) {
       if (bare_name(name) == bare) found.push_back(name);
     }

@@ -57,7 +57,7 @@ std::string note_of(const DefaultFills& fills, const std::string& name);
 
 /// Returns the names by which other programs call scales, missing values and placements, whatever
 /// the case of their letters and what stands between their words.
-std::vector<std::string> foreign_names(const std::vector<std::string>& names);
+std::vector<std::string> other_conventions(const std::vector<std::string>& names);
 
 /// Returns one note on each attribute that could change the picture and is not read.
 std::vector<std::string> notes_on_unread(const VariableAttributes& attributes,

@@ -23,7 +23,7 @@ std::shared_ptr<const std::byte> decode_dicom(const DicomImage& image) {
 
 #include "files/input_file.h"
 #include "files/memory_limit.h"
-#include "process/contained.h"
+#include "process/child_process.h"
 
 namespace pellucid {
 
@@ -89,7 +89,7 @@ std::shared_ptr<const std::byte> decode_dicom(const DicomImage& image) {
   // Where they are decompressed, and planes beside them.
   check_memory(2 * bytes, name + ": its pixels");
   // GDCM 3.0.21 crashes on damaged files, some 8 of 1000 (docs/reference/limitations.md).
-  return run_contained(
+  return run_in_child(
       bytes, [&](std::span<std::byte> to) { return decode(image, to); },
       check_input_file(image.file));
 }

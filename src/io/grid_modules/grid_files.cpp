@@ -17,8 +17,8 @@
 #include "files/memory_limit.h"
 #include "grid_answer.h"
 #include "pellucid/scene/error.h"
-#include "process/contained.h"
-#include "process/contained_values.h"
+#include "process/child_process.h"
+#include "process/child_values.h"
 #include "text/text.h"
 #include "volumes/array_statistics.h"
 #include "volumes/volume_steps.h"
@@ -30,14 +30,14 @@ namespace {
 /// Calls a module's function in a process of its own: `work` says with what, where its answer goes,
 /// and whether that is well. The module is loaded there and nowhere else.
 template <class Function>
-std::shared_ptr<std::byte> contained(
+std::shared_ptr<std::byte> module_in_child(
     const GridFormat& format, const char* name, const std::filesystem::path& path,
     std::size_t bytes, const std::function<bool(Function&, std::span<std::byte>)>& work) {
   const std::uintmax_t file_bytes = check_input_file(path);
   std::shared_ptr<std::byte> answer;
   try {
     module_file(format.module);  // says at once if it is not there
-    answer = run_contained(
+    answer = run_in_child(
         bytes,
         [&](std::span<std::byte> to) {
           return work(*reinterpret_cast<Function*>(module_function(format.module, name)), to);
@@ -66,12 +66,12 @@ GridContents contents_of(const std::filesystem::path& path, const ReadOptions& o
                          const GridFormat& format) {
   // Room for the positions along axes; what is not written to is no memory.
   constexpr std::size_t room = std::size_t{16} << 20;
-  const auto bytes = contained<ListGrids>(format, list_grids_name, path, room,
-                                          [&](ListGrids& list, std::span<std::byte> to) {
-                                            GridContents contents;
-                                            list(path, options.axes, contents);
-                                            return write_grid_contents(contents, to);
-                                          });
+  const auto bytes = module_in_child<ListGrids>(format, list_grids_name, path, room,
+                                                [&](ListGrids& list, std::span<std::byte> to) {
+                                                  GridContents contents;
+                                                  list(path, options.axes, contents);
+                                                  return write_grid_contents(contents, to);
+                                                });
   std::optional<GridContents> contents = read_grid_contents({bytes.get(), room});
   if (!contents) throw Error(path.string() + ": its list of arrays is damaged");
   if (!contents->error.empty()) throw Error(path.string() + ": " + one_line(contents->error));
@@ -177,7 +177,7 @@ std::vector<VolumeData> read_values(const std::filesystem::path& path, const Gri
   constexpr std::size_t alignment = 8;
   const std::size_t stride = (points * largest + alignment - 1) / alignment * alignment;
   const std::size_t end = stride * static_cast<std::size_t>(range.number);
-  const auto bytes = contained<ReadGrid>(
+  const auto bytes = module_in_child<ReadGrid>(
       format, read_grid_name, path, end + Trailer::size(range.number),
       [&](ReadGrid& read, std::span<std::byte> to) {
         const Trailer trailer(to.subspan(end));
@@ -203,7 +203,7 @@ std::vector<VolumeData> read_values(const std::filesystem::path& path, const Gri
   for (std::size_t c = 0; c < static_cast<std::size_t>(range.number); ++c) {
     const std::string type = trailer.type(c, name);
     if (value_size(type, name) > largest) throw Error(name + ": cannot be read; it is damaged");
-    components.push_back(contained_values(bytes, c * stride, points, type));
+    components.push_back(child_values(bytes, c * stride, points, type));
   }
   return components;
 }

@@ -15,7 +15,7 @@
 #include "pellucid/io/internal/module.h"
 #include "pellucid/scene/error.h"
 #include "process/answer_json.h"
-#include "process/contained.h"
+#include "process/child_process.h"
 #include "text/text.h"
 
 namespace pellucid {
@@ -28,14 +28,14 @@ constexpr Module module{"pellucid_hdf5.so", "reads HDF5 files", "HDF5 (Debian: l
 
 /// Calls a function of the module in a process of its own.
 template <class Function>
-std::shared_ptr<std::byte> contained(
+std::shared_ptr<std::byte> module_in_child(
     const char* name, const std::filesystem::path& path, std::size_t bytes,
     const std::function<bool(Function&, std::span<std::byte>)>& work) {
   const std::uintmax_t file_bytes = check_input_file(path);
   std::shared_ptr<std::byte> answer;
   try {
     module_file(module);  // says at once if it is not there
-    answer = run_contained(
+    answer = run_in_child(
         bytes,
         [&](std::span<std::byte> to) {
           return work(*reinterpret_cast<Function*>(module_function(module, name)), to);
@@ -177,12 +177,12 @@ std::optional<VtkHdfContents> vtk_hdf_contents(const std::filesystem::path& path
   if (!looks_like_vtk_hdf(path)) return std::nullopt;
   // Room for the times of many steps; what is not written to is no memory.
   constexpr std::size_t room = std::size_t{64} << 20;
-  const auto bytes = contained<ListVtkHdf>(list_vtk_hdf_name, path, room,
-                                           [&](ListVtkHdf& list, std::span<std::byte> to) {
-                                             VtkHdfContents contents;
-                                             list(path, contents);
-                                             return write(contents, to);
-                                           });
+  const auto bytes = module_in_child<ListVtkHdf>(list_vtk_hdf_name, path, room,
+                                                 [&](ListVtkHdf& list, std::span<std::byte> to) {
+                                                   VtkHdfContents contents;
+                                                   list(path, contents);
+                                                   return write(contents, to);
+                                                 });
   VtkHdfContents contents;
   try {
     contents = read_contents({bytes.get(), room});
@@ -250,7 +250,7 @@ std::size_t VtkHdfValues::want(const VtkHdfArray& array, std::optional<std::int6
 void VtkHdfValues::read() {
   check_memory(bytes_, path_.string() + ": its values");
   constexpr std::size_t longest = 4096;
-  all_ = contained<ReadVtkHdf>(
+  all_ = module_in_child<ReadVtkHdf>(
       read_vtk_hdf_name, path_, bytes_ + longest, [&](ReadVtkHdf& read, std::span<std::byte> to) {
         std::vector<VtkHdfWanted> wanted;
         wanted.reserve(entries_.size());

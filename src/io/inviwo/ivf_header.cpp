@@ -18,7 +18,7 @@
 #include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "text/xml_scanner.h"
-#include "transfer_functions/foreign_text.h"
+#include "transfer_functions/import_text.h"
 #include "volumes/components.h"
 #include "volumes/volume_format.h"
 
@@ -80,7 +80,7 @@ class IvfReader {
                 std::string(key));
   }
   double number(const XmlTag& tag, std::string_view key) const {
-    return foreign::number_of(attribute(tag, key), scanner_.where(tag));
+    return imported::number_of(attribute(tag, key), scanner_.where(tag));
   }
   Vec3<double> vector(const XmlTag& tag) const {
     return {number(tag, "x"), number(tag, "y"), number(tag, "z")};

@@ -26,7 +26,7 @@
 #include "text/printable.h"
 #include "text/text.h"
 #include "text/xml_scanner.h"
-#include "transfer_functions/foreign_text.h"
+#include "transfer_functions/import_text.h"
 #include "volumes/components.h"
 #include "volumes/volume_format.h"
 
@@ -93,7 +93,7 @@ class VvdReader {
                 std::string(key));
   }
   double number(const XmlTag& tag, std::string_view key) const {
-    return foreign::number_of(attribute(tag, key), scanner_.where(tag));
+    return imported::number_of(attribute(tag, key), scanner_.where(tag));
   }
 
   void take_raw(const XmlTag& tag) {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "mesh_blocks.h"
-#include "process/contained.h"
+#include "process/child_process.h"
 
 namespace pellucid {
 

@@ -4,7 +4,7 @@
 
 #include "files/memory_limit.h"
 #include "pellucid/io/write_mesh.h"
-#include "pellucid/scene/cut_cells.h"
+#include "pellucid/scene/tetrahedralize.h"
 
 namespace pellucid {
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 pellucid_io_sources(
   LATER
-    contained.cpp
+    child_process.cpp
     module.cpp
   NOT_WEB
-    contained.cpp
+    child_process.cpp
     module.cpp
   WEB
     no_module.cpp)

@@ -36,8 +36,8 @@ bool names(const MultivariateDescription& function, std::string_view channel) {
          (function.factor && function.factor->channel == channel);
 }
 
-/// Options that the functions of all layers share.
-struct Wanted {
+/// Tolerance and background of the scene, to which opacity tables are fitted.
+struct FitTarget {
   double tolerance;
   std::optional<Background> background;
 };
@@ -45,7 +45,7 @@ struct Wanted {
 /// Returns the function of a volume or a mesh.
 template <class Data>
 TransferFunction function_of(const std::optional<TransferFunctionDescription>& description,
-                             const Wanted& wanted, const Data& data,
+                             const FitTarget& target, const Data& data,
                              std::optional<LayerProjection> projection = {}) {
   if (!description) {
     return projection ? projection_transfer_function(data, *projection)
@@ -54,13 +54,13 @@ TransferFunction function_of(const std::optional<TransferFunctionDescription>& d
   if (const auto* preset = std::get_if<PresetDescription>(&*description)) {
     return make_preset(preset->name, data, preset->range);
   }
-  return make_transfer_function(*description, wanted.tolerance, wanted.background);
+  return make_transfer_function(*description, target.tolerance, target.background);
 }
 
 /// Returns the function of a layer of one variable. Without a function between surfaces it is
 /// transparent; slices without colors take its own.
 template <class Data>
-TransferFunction medium_function(const LayerDescription& description, const Wanted& wanted,
+TransferFunction medium_function(const LayerDescription& description, const FitTarget& target,
                                  const Data& data) {
   if (const auto& range = description.function_change.range;
       range && description.transfer_function) {
@@ -70,7 +70,7 @@ TransferFunction medium_function(const LayerDescription& description, const Want
     }
   }
   if (description.transfer_function || !description.shows_surfaces()) {
-    return function_of(description.transfer_function, wanted, data, description.projection);
+    return function_of(description.transfer_function, target, data, description.projection);
   }
   const auto has_no_colors = [](const Slice& slice) {
     return !slice.colors && !slice.written_colors;
@@ -148,7 +148,7 @@ Look chosen_look(const Data& data, const LayerDescription& description) {
 
 /// Whose function is of one variable or of several. `look` becomes the layer's look, if it takes
 /// one.
-MeshContent load_mesh_content(const LayerDescription& description, const Wanted& wanted,
+MeshContent load_mesh_content(const LayerDescription& description, const FitTarget& target,
                               const Layer* loaded, const ParallelFor& parallel,
                               MeshSource& mesh_used, std::optional<Look>& look) {
   MeshContent content;
@@ -175,13 +175,13 @@ MeshContent load_mesh_content(const LayerDescription& description, const Wanted&
     content.transfer_function = std::make_shared<const TransferFunction>(look->transfer_function);
   } else if (content.multivariate() == nullptr) {
     content.transfer_function = std::make_shared<const TransferFunction>(
-        medium_function(description, wanted, *content.mesh));
+        medium_function(description, target, *content.mesh));
   }
   return content;
 }
 
 /// `look` becomes the layer's look, if it takes one.
-VolumeContent load_volume_content(const LayerDescription& description, const Wanted& wanted,
+VolumeContent load_volume_content(const LayerDescription& description, const FitTarget& target,
                                   const Layer* loaded, std::optional<Look>& look) {
   VolumeContent content;
   const auto* const kept = content_of<VolumeContent>(loaded);
@@ -195,7 +195,7 @@ VolumeContent load_volume_content(const LayerDescription& description, const Wan
     return content;
   }
   content.transfer_function = std::make_shared<const TransferFunction>(
-      medium_function(description, wanted, *content.volume));
+      medium_function(description, target, *content.volume));
   if (!description.mask) return content;
   auto labels = kept != nullptr && kept->mask
                     ? kept->mask->shared_labels()
@@ -205,7 +205,7 @@ VolumeContent load_volume_content(const LayerDescription& description, const Wan
   for (const MaskSource::Choice& choice : description.mask->choices) {
     choices.push_back(
         {choice.label, std::make_shared<const TransferFunction>(function_of(
-                           std::optional(choice.transfer_function), wanted, *content.volume))});
+                           std::optional(choice.transfer_function), target, *content.volume))});
   }
   content.mask = std::make_shared<const LabelMask>(std::move(labels), std::move(choices));
   return content;
@@ -238,7 +238,7 @@ template <class Data>
 TransferFunction made_colors(const TransferFunctionDescription* written, const Data& data) {
   if (written == nullptr) return grey_colors(data);
   const auto* const table = std::get_if<OpacityTable>(written);
-  if (table == nullptr) return function_of(*written, Wanted{}, data);
+  if (table == nullptr) return function_of(*written, FitTarget{}, data);
   std::vector<TransferFunction::Point> points;
   for (const OpacityPoint& point : table->points) points.push_back({point.value, 0, point.color});
   return {std::move(points), 0.0, table->color_deviation};
@@ -334,18 +334,18 @@ class LookLoader {
 };
 
 /// Takes the data of `loaded` unless it is null.
-Layer load_layer(const LayerDescription& description, const Wanted& wanted, const Layer* loaded,
+Layer load_layer(const LayerDescription& description, const FitTarget& target, const Layer* loaded,
                  const ParallelFor& parallel, MeshSource& mesh_used) {
   Layer layer = static_cast<const Layer&>(description);
   std::optional<Look> look;
   if (description.labels) {
     layer.content = load_label_content(*description.labels, loaded);
   } else if (description.mesh) {
-    layer.content = load_mesh_content(description, wanted, loaded, parallel, mesh_used, look);
+    layer.content = load_mesh_content(description, target, loaded, parallel, mesh_used, look);
   } else if (const auto sources = layer_channels(description); !sources.empty()) {
     layer.content = load_channels_content(description, sources, loaded, parallel);
   } else {
-    layer.content = load_volume_content(description, wanted, loaded, look);
+    layer.content = load_volume_content(description, target, loaded, look);
   }
   if (!look) change_function(description, layer);
   LookLoader(description, layer)();
@@ -370,7 +370,7 @@ Look look_of(const Volume& volume, const LayerDescription& description) {
 }
 
 TransferFunction function_on(const Volume& volume, const LayerDescription& description) {
-  return medium_function(description, Wanted{}, volume);
+  return medium_function(description, FitTarget{}, volume);
 }
 
 std::vector<ChannelSource> layer_channels(const LayerDescription& description) {
@@ -431,11 +431,11 @@ Scene remake_scene(const SceneDescription& description,
   }
   Scene scene;
   static_cast<SceneSettings&>(scene) = description;
-  const Wanted wanted{description.integration.tolerance, description.background};
+  const FitTarget target{description.integration.tolerance, description.background};
   std::vector<MeshSource> meshes(description.layers.size());
   for (std::size_t i = 0; i < description.layers.size(); ++i) {
     const Layer* const kept = loaded[i] ? &*loaded[i] : nullptr;
-    scene.layers.push_back(load_layer(description.layers[i], wanted, kept, parallel, meshes[i]));
+    scene.layers.push_back(load_layer(description.layers[i], target, kept, parallel, meshes[i]));
   }
   if (meshes_used != nullptr) *meshes_used = std::move(meshes);
   scene.camera = description.camera

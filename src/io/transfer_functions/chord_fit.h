@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "foreign_text.h"
+#include "import_text.h"
 #include "jet.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/opacity_table.h"
 
-namespace pellucid::foreign {
+namespace pellucid::imported {
 
 /// Opacities below the first, and above 1 less the second, are followed to within as much and no
 /// closer: the first is an extinction of nothing, the second one of 13.8 per unit distance.
@@ -32,7 +32,7 @@ inline double depth_deviation(double lower, double upper, double difference) {
 
 /// Puts chords through the smooth pieces of colors and opacities until they are close enough, by
 /// halving; both bounds are proved (chord_deviation, depth_deviation). `Curves` gives breaks(),
-/// place(), color() and opacity() as foreign::Curves does.
+/// place(), color() and opacity() as imported::Curves does.
 template <class Curves>
 class ChordFit {
  public:
@@ -116,7 +116,7 @@ class ChordFit {
           depth = lower > 0 ? opacity / lower : std::numeric_limits<double>::infinity();
         }
       } else if (upper > thin_opacity && lower < 1 - dense_opacity) {
-        depth = foreign::depth_deviation(lower, upper, opacity);
+        depth = imported::depth_deviation(lower, upper, opacity);
       }
       if (!(depth <= depth_limit_)) return false;
     }
@@ -156,4 +156,4 @@ class ChordFit {
   std::vector<OpacityPoint> points_;
 };
 
-}  // namespace pellucid::foreign
+}  // namespace pellucid::imported

@@ -7,14 +7,14 @@
 #include <nlohmann/json.hpp>
 
 #include "chord_fit.h"
-#include "foreign_curves.h"
+#include "import_curves.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
 namespace {
 
-using foreign::Jet;
-using foreign::Triple;
+using imported::Jet;
+using imported::Triple;
 
 /// The largest slope of the sRGB curve, at 1: light is off by so much more than signals.
 constexpr double steepest_light = 2.4 / 1.055;
@@ -50,7 +50,7 @@ class OwnCurves {
   Triple<T> color(const T& value, const Place& place) const {
     Triple<T> signals;
     for (std::size_t i = 0; i < 3; ++i) {
-      signals[i] = foreign::signal_of(
+      signals[i] = imported::signal_of(
           between(value, place, [&](const Node& node) { return node.light[i]; }));
     }
     return signals;
@@ -58,7 +58,7 @@ class OwnCurves {
   template <class T>
   T opacity(const T& value, const Place& place) const {
     const T strength = between(value, place, [](const Node& node) { return node.strength; });
-    return depths_ ? T(1) - foreign::exponential(T(0) - strength) : strength;
+    return depths_ ? T(1) - imported::exponential(T(0) - strength) : strength;
   }
 
  private:
@@ -68,7 +68,7 @@ class OwnCurves {
     const Node& a = nodes_[place.node];
     if (place.node + 1 == nodes_.size()) return T(part(a));
     const Node& b = nodes_[place.node + 1];
-    return foreign::mix(part(a), part(b), foreign::ratio(value - T(a.value), b.value - a.value));
+    return imported::mix(part(a), part(b), imported::ratio(value - T(a.value), b.value - a.value));
   }
 
   std::vector<Node> nodes_;
@@ -88,7 +88,7 @@ std::vector<OwnCurves::Node> nodes(const std::vector<Point>& points, double Poin
   std::vector<OwnCurves::Node> list;
   for (const Point& p : points) {
     check_color(p.color, list.size());
-    list.push_back({p.value, p.*strength * scale, foreign::triple(p.color)});
+    list.push_back({p.value, p.*strength * scale, imported::triple(p.color)});
   }
   return list;
 }
@@ -179,12 +179,12 @@ void add_notes(const ExportOptions& options, double unit_distance, std::size_t p
   exported.notes.push_back(std::to_string(points) + " nodes");
   exported.notes.push_back(exported.color_deviation > 0
                                ? "colors: fitted by lines in sRGB, within " +
-                                     foreign::text_of(exported.color_deviation) +
+                                     imported::text_of(exported.color_deviation) +
                                      " of each channel in linear light"
                                : "colors: exact");
   exported.notes.push_back(exported.extinction_deviation > 0
                                ? "opacities: fitted, extinctions within a factor of 1 + " +
-                                     foreign::text_of(exported.extinction_deviation)
+                                     imported::text_of(exported.extinction_deviation)
                                : "opacities: exact");
   exported.notes.push_back(options.format == ExportFormat::slicer
                                ? unit
@@ -249,8 +249,8 @@ ExportedTransferFunction export_transfer_function(const LookDescription& look,
                                    &TransferFunction::Point::extinction, unit_distance);
   if (list.empty()) throw Error("export: the transfer function has no points");
   const OwnCurves curves(std::move(list), own_table == nullptr);
-  foreign::ChordFit<OwnCurves> chords(curves, options.deviation / steepest_light, options.deviation,
-                                      "export");
+  imported::ChordFit<OwnCurves> chords(curves, options.deviation / steepest_light,
+                                       options.deviation, "export");
   const std::vector<OpacityPoint> points = chords.points();
   ExportedTransferFunction exported;
   if (chords.color_deviation() > 0) {

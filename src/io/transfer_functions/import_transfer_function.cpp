@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "foreign_readers.h"
-#include "foreign_text.h"
+#include "import_readers.h"
+#include "import_text.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
@@ -30,9 +30,9 @@ Kind kind_of(const Node& document) {
     if (document.has(key)) return Kind::own;
   }
   if (const auto gaussians = document.find("gaussians")) {
-    const bool foreign = gaussians->is_array() && gaussians->array_size() > 0 &&
-                         gaussians->element(0).has("position");
-    return foreign ? Kind::vtk_js : Kind::own;
+    const bool is_vtk_js = gaussians->is_array() && gaussians->array_size() > 0 &&
+                           gaussians->element(0).has("position");
+    return is_vtk_js ? Kind::vtk_js : Kind::own;
   }
   if (document.has("volumeProperties")) return Kind::slicer;
   for (const char* key : {"RGBPoints", "Points", "ColorSpace", "IndexedColors"}) {
@@ -55,7 +55,7 @@ Kind kind_of(std::string_view text) {
   if (text.starts_with('<')) return Kind::xml;
   // The first line of a volume property is one number; no row of colors is.
   const std::string_view line = text.substr(0, text.find('\n'));
-  const std::vector<std::string_view> list = foreign::words(line, " \t\r,;");
+  const std::vector<std::string_view> list = imported::words(line, " \t\r,;");
   const bool number =
       list.size() == 1 && list[0].find_first_not_of("0123456789") == std::string_view::npos;
   return number ? Kind::slicer_text : Kind::table;
@@ -82,16 +82,16 @@ void check(const ImportOptions& options) {
   }
 }
 
-foreign::Function read_json(const Node& document, const std::string& wanted) {
+imported::Function read_json(const Node& document, const std::string& wanted) {
   switch (kind_of(document)) {
     case Kind::paraview:
-      return foreign::read_paraview(document, wanted);
+      return imported::read_paraview(document, wanted);
     case Kind::slicer:
-      return foreign::read_slicer(document);
+      return imported::read_slicer(document);
     case Kind::vtk_js:
-      return foreign::read_vtk_js(document);
+      return imported::read_vtk_js(document);
     case Kind::anari:
-      return foreign::read_anari(document);
+      return imported::read_anari(document);
     default:
       document.fail("is no transfer function of ParaView, 3D Slicer, vtk.js or ANARI");
   }
@@ -99,7 +99,7 @@ foreign::Function read_json(const Node& document, const std::string& wanted) {
 
 }  // namespace
 
-bool is_foreign_transfer_function(std::string_view text) {
+bool needs_import(std::string_view text) {
   const std::string_view begin = from_first_letter(text);
   if (!is_json(begin)) return !begin.empty();
   try {
@@ -118,15 +118,15 @@ ImportedTransferFunction import_transfer_function(std::string_view text, const s
   if (begin.empty()) throw Error(name + ": is empty; give a transfer function");
   if (is_json(begin)) {
     const nlohmann::json parsed = scene_json::parse_document(begin, name);
-    return foreign::fit(read_json(Node(parsed, name), options.name), options);
+    return imported::fit(read_json(Node(parsed, name), options.name), options);
   }
   switch (kind_of(begin)) {
     case Kind::xml:
-      return foreign::fit(foreign::read_xml(begin, name, options.name), options);
+      return imported::fit(imported::read_xml(begin, name, options.name), options);
     case Kind::slicer_text:
-      return foreign::fit(foreign::read_slicer_text(begin, name), options);
+      return imported::fit(imported::read_slicer_text(begin, name), options);
     default:
-      return foreign::fit(foreign::read_color_table(begin, name), options);
+      return imported::fit(imported::read_color_table(begin, name), options);
   }
 }
 

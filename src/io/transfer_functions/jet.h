@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-namespace pellucid::foreign {
+namespace pellucid::imported {
 
 /// A closed interval that encloses all values of a quantity. Rounding is left out: what is proved
 /// by it holds to some units in the last place, which curve_fit.h adds.
@@ -181,4 +181,4 @@ inline double chord_deviation(const Jet& f, double length) {
   return kinked >= 0 ? kinked : std::numeric_limits<double>::infinity();
 }
 
-}  // namespace pellucid::foreign
+}  // namespace pellucid::imported

@@ -2,17 +2,17 @@
 pellucid_io_sources(
   LATER
     export_transfer_function.cpp
-    foreign_color_path.cpp
-    foreign_complete.cpp
-    foreign_fit.cpp
-    foreign_gaussians.cpp
-    foreign_light.cpp
-    foreign_paraview.cpp
-    foreign_paths.cpp
-    foreign_shaped.cpp
-    foreign_slicer.cpp
-    foreign_table.cpp
-    foreign_text.cpp
-    foreign_ways.cpp
-    foreign_xml.cpp
+    import_color_path.cpp
+    import_complete.cpp
+    import_fit.cpp
+    import_gaussians.cpp
+    import_light.cpp
+    import_paraview.cpp
+    import_paths.cpp
+    import_shaped.cpp
+    import_slicer.cpp
+    import_table.cpp
+    import_text.cpp
+    import_ways.cpp
+    import_xml.cpp
     import_transfer_function.cpp)

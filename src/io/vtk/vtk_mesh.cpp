@@ -16,7 +16,7 @@
 #include "meshes/mesh_format.h"
 #include "netcdf/net_cdf_size.h"
 #include "pellucid/scene/error.h"
-#include "process/contained.h"
+#include "process/child_process.h"
 #include "text/text.h"
 #include "vtk/xml/vtk_xml_check.h"
 #include "vtk_collection.h"
@@ -35,7 +35,7 @@ MeshBlocks read_by_vtk(const std::filesystem::path& path, VtkFormat format,
   std::optional<MeshBlocks> mesh;
   try {
     check_vtk_module();
-    const ContainedBytes bytes = run_contained_answer(
+    const ChildBytes bytes = answer_in_child(
         [&](const MakeAnswer& make) {
           VtkAnswer answer;
           vtk_module()(
@@ -74,7 +74,7 @@ std::vector<double> exodus_times(const std::filesystem::path& path) {
   std::vector<double> times;
   try {
     check_vtk_module();
-    const ContainedBytes bytes = run_contained_answer(
+    const ChildBytes bytes = answer_in_child(
         [&](const MakeAnswer& make) {
           std::vector<double> found;
           std::string error;

@@ -13,8 +13,8 @@
 #include "files/memory_limit.h"
 #include "pellucid/io/read_mesh.h"
 #include "pellucid/scene/error.h"
-#include "process/contained.h"
-#include "process/contained_values.h"
+#include "process/child_process.h"
+#include "process/child_values.h"
 #include "volumes/volume_format.h"
 #include "volumes/volume_source.h"
 #include "vtk_file_kind.h"
@@ -28,15 +28,15 @@ namespace pellucid {
 namespace {
 
 /// Runs `work`, which calls VTK, in a process of its own. Throws Error where it fails.
-ContainedBytes run_vtk(const std::filesystem::path& path,
-                       const std::function<void(const MakeAnswer&)>& work) {
+ChildBytes run_vtk(const std::filesystem::path& path,
+                   const std::function<void(const MakeAnswer&)>& work) {
   const std::uintmax_t bytes = bytes_of_vtk_files(path);
   try {
     check_vtk_module();
   } catch (const Error& error) {
     throw Error(path.string() + ": " + error.what());
   }
-  ContainedBytes answer = run_contained_answer(
+  ChildBytes answer = answer_in_child(
       [&](const MakeAnswer& make) {
         work(make);
         return true;
@@ -63,7 +63,7 @@ std::vector<VolumeData> read_part(const std::filesystem::path& path, const Opene
   check_memory(bytes, name + ": its values");
   // Behind the values stands how far pieces disagree.
   PieceDifferences differences;
-  const ContainedBytes answer = run_vtk(path, [&](const MakeAnswer& make) {
+  const ChildBytes answer = run_vtk(path, [&](const MakeAnswer& make) {
     const std::span<std::byte> to = make(bytes + sizeof(differences));
     differences = read_part_here(path, opened, range, to.first(bytes));
     std::memcpy(to.data() + bytes, &differences, sizeof(differences));
@@ -73,7 +73,7 @@ std::vector<VolumeData> read_part(const std::filesystem::path& path, const Opene
   if (note && differences.count > 0) note(name + ": " + differences.note("first"));
   std::vector<VolumeData> components;
   for (std::size_t c = 0; c < static_cast<std::size_t>(range.number); ++c) {
-    components.push_back(contained_values(answer.data, c * points * size, points, opened.type));
+    components.push_back(child_values(answer.data, c * points * size, points, opened.type));
   }
   return components;
 }
@@ -83,7 +83,7 @@ std::vector<VolumeData> read_part(const std::filesystem::path& path, const Opene
 VolumeFile open_vtk_volume(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);
-  const ContainedBytes answer =
+  const ChildBytes answer =
       run_vtk(path, [&](const MakeAnswer& make) { write_opened(open_here(path, options), make); });
   OpenedVtkVolume opened = checked(read_opened(answer, name), path);
   opened.time = options.time;
@@ -111,7 +111,7 @@ VolumeFile open_vtk_volume(const std::filesystem::path& path, const ReadOptions&
 }
 
 std::vector<VolumeArray> list_vtk_arrays(const std::filesystem::path& path) {
-  const ContainedBytes answer =
+  const ChildBytes answer =
       run_vtk(path, [&](const MakeAnswer& make) { write_arrays(list_here(path), make); });
   return checked(read_arrays(answer), path);
 }

@@ -12,7 +12,7 @@
 
 #include "pellucid/scene/error.h"
 #include "process/answer_json.h"
-#include "process/contained_values.h"
+#include "process/child_values.h"
 
 namespace pellucid {
 
@@ -92,7 +92,7 @@ void write_opened(const OpenedVtkVolume& opened, const MakeAnswer& make) {
       opened.values);
 }
 
-std::optional<OpenedVtkVolume> read_opened(const ContainedBytes& bytes, const std::string& name) {
+std::optional<OpenedVtkVolume> read_opened(const ChildBytes& bytes, const std::string& name) {
   try {
     const json head = head_of(bytes.span());
     OpenedVtkVolume opened;
@@ -115,7 +115,7 @@ std::optional<OpenedVtkVolume> read_opened(const ContainedBytes& bytes, const st
     if (begin > bytes.size || count > (bytes.size - begin) / value_size(opened.type, name)) {
       return std::nullopt;
     }
-    opened.values = contained_values(bytes.data, begin, count, opened.type);
+    opened.values = child_values(bytes.data, begin, count, opened.type);
     return opened;
   } catch (const json::exception&) {
     return std::nullopt;
@@ -139,7 +139,7 @@ void write_arrays(const std::vector<VolumeArray>& arrays, const MakeAnswer& make
   write(list, {}, make);
 }
 
-std::optional<std::vector<VolumeArray>> read_arrays(const ContainedBytes& bytes) {
+std::optional<std::vector<VolumeArray>> read_arrays(const ChildBytes& bytes) {
   try {
     std::vector<VolumeArray> arrays;
     for (const json& j : head_of(bytes.span())) {

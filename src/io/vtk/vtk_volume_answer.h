@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "process/contained.h"
+#include "process/child_process.h"
 #include "vtk_volume_open.h"
 
 namespace pellucid {
@@ -16,7 +16,7 @@ void write_arrays(const std::vector<VolumeArray>& arrays, const MakeAnswer& make
 
 /// Read what these wrote; nothing where it does not stand there, for the process may have written
 /// anything. The values stay in place.
-std::optional<OpenedVtkVolume> read_opened(const ContainedBytes& bytes, const std::string& name);
-std::optional<std::vector<VolumeArray>> read_arrays(const ContainedBytes& bytes);
+std::optional<OpenedVtkVolume> read_opened(const ChildBytes& bytes, const std::string& name);
+std::optional<std::vector<VolumeArray>> read_arrays(const ChildBytes& bytes);
 
 }  // namespace pellucid

@@ -9,8 +9,8 @@
 namespace pellucid::vtk_scene {
 namespace {
 
-using foreign::ShapedFunction;
-using foreign::ShapedNode;
+using imported::ShapedFunction;
+using imported::ShapedNode;
 
 /// VTK's number of a color space.
 constexpr int ciede2000 = 4;
@@ -33,7 +33,7 @@ ShapedFunction cleaned(const ShapedFunction& given, double largest, const RampRa
   ShapedFunction function = given;
   function.largest = largest;
   if (given.nodes.empty()) {
-    if (ramp) function.nodes = foreign::ramp(*ramp, given.is_color);
+    if (ramp) function.nodes = imported::ramp(*ramp, given.is_color);
     return function;
   }
   const auto is_none = [](const ShapedNode& node) { return !has_numbers(node); };
@@ -93,8 +93,8 @@ FittedCurve FunctionReader::fitted(const FunctionSettings& given, double largest
       !given.shape.nodes.empty() && !(given.shape.is_color && given.shape.space == ciede2000);
   const FittedCurve fitted =
       *kept_->find({function, deviation_}, [&](const std::pair<ShapedFunction, double>& recipe) {
-        return foreign::fit(recipe.first, recipe.second, given.way,
-                            is_compared ? given.own : foreign::SampleFunction());
+        return imported::fit(recipe.first, recipe.second, given.way,
+                             is_compared ? given.own : imported::SampleFunction());
       });
   if (fitted.is_coarse) {
     notes_->add(what +

@@ -13,23 +13,23 @@
 
 namespace pellucid::vtk_scene {
 
-using foreign::Curve;
-using foreign::CurvePoint;
-using foreign::FittedCurve;
+using imported::Curve;
+using imported::CurvePoint;
+using imported::FittedCurve;
 
-using KeptCurves = Kept<std::pair<foreign::ShapedFunction, double>, FittedCurve>;
+using KeptCurves = Kept<std::pair<imported::ShapedFunction, double>, FittedCurve>;
 
 /// The range of data over which VTK's GPU mapper puts a ramp into a function without nodes; none
 /// where VTK shows such a function as 0.
 using RampRange = std::optional<std::array<double, 2>>;
 
 /// Reads functions of VTK as curves: exact where they are straight, else within
-/// foreign::function_deviation() of a tolerance. Nodes with a number that is none are left out, and
-/// the notes say so.
+/// imported::function_deviation() of a tolerance. Nodes with a number that is none are left out,
+/// and the notes say so.
 class FunctionReader {
  public:
   FunctionReader(double tolerance, KeptCurves& kept, Notes& notes)
-      : deviation_(foreign::function_deviation(tolerance)), kept_(&kept), notes_(&notes) {}
+      : deviation_(imported::function_deviation(tolerance)), kept_(&kept), notes_(&notes) {}
 
   /// Opacities above `largest` are cut; those below 0 always are.
   FittedCurve opacities(const FunctionSettings& function, double largest, const RampRange& ramp);

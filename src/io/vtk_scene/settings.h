@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pellucid/geometry/vec3.h"
-#include "transfer_functions/foreign_shaped.h"
+#include "transfer_functions/import_shaped.h"
 
 /// VTK's scenes by their numbers, without VTK. The plug-ins read the numbers off VTK's objects in
 /// C++, the Python package off those of Python; all that is made of them is made here.
@@ -23,9 +23,9 @@ struct Plane {
 
 /// A vtkPiecewiseFunction or a vtkColorTransferFunction.
 struct FunctionSettings {
-  foreign::ShapedFunction shape{};  ///< with all of its nodes, as they are
-  foreign::SampleFunction own{};    ///< VTK's own values: opacities three times, or colors
-  foreign::SampleWay way{};         ///< VTK's ways of CIEDE2000; colors alone have them
+  imported::ShapedFunction shape{};  ///< with all of its nodes, as they are
+  imported::SampleFunction own{};    ///< VTK's own values: opacities three times, or colors
+  imported::SampleWay way{};         ///< VTK's ways of CIEDE2000; colors alone have them
   bool is_indexed = false, is_discretized = false;  ///< colors alone are
 };
 

@@ -65,8 +65,8 @@ class LagrangeTables {
 /// A tetrahedron at every place of the lattice, octahedra between them, each cut into four around
 /// its shortest diagonal, and tetrahedra upside down between those.
 template <class Emit>
-void cut_lagrange_tetrahedron(const LagrangeNodes& nodes, const std::int32_t* v,
-                              const Vec3<double>* points, const Emit& emit) {
+void tetrahedralize_lagrange_tetrahedron(const LagrangeNodes& nodes, const std::int32_t* v,
+                                         const Vec3<double>* points, const Emit& emit) {
   const int order = nodes.order(0);
   for (int k = 0; k < order; ++k) {
     for (int j = 0; j + k < order; ++j) {
@@ -77,7 +77,7 @@ void cut_lagrange_tetrahedron(const LagrangeNodes& nodes, const std::int32_t* v,
         if (room >= 2) {
           const std::int32_t octahedron[6] = {at(1, 0, 0), at(0, 1, 0), at(0, 0, 1),
                                               at(0, 1, 1), at(1, 0, 1), at(1, 1, 0)};
-          cut_octahedron(octahedron, points, emit);
+          tetrahedralize_octahedron(octahedron, points, emit);
         }
         if (room >= 3) emit(at(1, 1, 1), at(0, 1, 1), at(1, 0, 1), at(1, 1, 0));
       }
@@ -89,7 +89,7 @@ void cut_lagrange_tetrahedron(const LagrangeNodes& nodes, const std::int32_t* v,
 /// one. Around the last: a tetrahedron to each of the four triangles beside a corner, and three to
 /// each of those in the middle of a side, which is cut at its node.
 template <class Emit>
-void cut_tetrahedron_of_15(const std::int32_t* v, const Emit& emit) {
+void tetrahedralize_tetrahedron_of_15(const std::int32_t* v, const Emit& emit) {
   constexpr int corner[4][4] = {{0, 4, 6, 7}, {1, 5, 4, 8}, {2, 6, 5, 9}, {3, 7, 8, 9}};
   // The nodes around those of the sides 0 2 1, 0 1 3, 1 2 3 and 0 3 2.
   constexpr int side[4][3] = {{6, 5, 4}, {4, 8, 7}, {5, 9, 8}, {7, 9, 6}};
@@ -104,21 +104,22 @@ void cut_tetrahedron_of_15(const std::int32_t* v, const Emit& emit) {
 }
 
 template <class Emit>
-void cut_lagrange_wedge(const LagrangeNodes& nodes, const std::int32_t* v, const Emit& emit) {
+void tetrahedralize_lagrange_wedge(const LagrangeNodes& nodes, const std::int32_t* v,
+                                   const Emit& emit) {
   const int order = nodes.order(0);
-  const auto cut = [&](int k, const std::array<std::array<int, 2>, 3>& triangle) {
+  const auto add_wedge = [&](int k, const std::array<std::array<int, 2>, 3>& triangle) {
     std::int32_t wedge[6];
     for (std::size_t c = 0; c < 3; ++c) {
       wedge[c] = v[nodes(triangle[c][0], triangle[c][1], k)];
       wedge[3 + c] = v[nodes(triangle[c][0], triangle[c][1], k + 1)];
     }
-    cut_wedge(wedge, emit);
+    tetrahedralize_wedge(wedge, emit);
   };
   for (int k = 0; k < nodes.order(2); ++k) {
     for (int j = 0; j < order; ++j) {
       for (int i = 0; i + j < order; ++i) {
-        cut(k, {{{i, j}, {i + 1, j}, {i, j + 1}}});
-        if (i + j + 2 <= order) cut(k, {{{i + 1, j}, {i + 1, j + 1}, {i, j + 1}}});
+        add_wedge(k, {{{i, j}, {i + 1, j}, {i, j + 1}}});
+        if (i + j + 2 <= order) add_wedge(k, {{{i + 1, j}, {i + 1, j + 1}, {i, j + 1}}});
       }
     }
   }
@@ -126,7 +127,7 @@ void cut_lagrange_wedge(const LagrangeNodes& nodes, const std::int32_t* v, const
 
 /// 21 nodes: in each of the three layers a triangle of seven, the last in its middle.
 template <class Emit>
-void cut_wedge_of_21(const std::int32_t* v, const Emit& emit) {
+void tetrahedralize_wedge_of_21(const std::int32_t* v, const Emit& emit) {
   constexpr int layer[3][7] = {
       {0, 1, 2, 6, 7, 8, 15}, {12, 13, 14, 17, 18, 19, 20}, {3, 4, 5, 9, 10, 11, 16}};
   constexpr int triangle[6][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 6}, {4, 5, 6}, {5, 3, 6}};
@@ -137,13 +138,14 @@ void cut_wedge_of_21(const std::int32_t* v, const Emit& emit) {
         wedge[i] = v[layer[l][t[i]]];
         wedge[3 + i] = v[layer[l + 1][t[i]]];
       }
-      cut_wedge(wedge, emit);
+      tetrahedralize_wedge(wedge, emit);
     }
   }
 }
 
 template <class Emit>
-void cut_lagrange_hexahedron(const LagrangeNodes& nodes, const std::int32_t* v, const Emit& emit) {
+void tetrahedralize_lagrange_hexahedron(const LagrangeNodes& nodes, const std::int32_t* v,
+                                        const Emit& emit) {
   for (int k = 0; k < nodes.order(2); ++k) {
     for (int j = 0; j < nodes.order(1); ++j) {
       for (int i = 0; i < nodes.order(0); ++i) {
@@ -151,7 +153,7 @@ void cut_lagrange_hexahedron(const LagrangeNodes& nodes, const std::int32_t* v, 
         for (int corner = 0; corner < 8; ++corner) {
           voxel[corner] = v[nodes(i + (corner & 1), j + (corner >> 1 & 1), k + (corner >> 2))];
         }
-        cut_voxel(voxel, emit);
+        tetrahedralize_voxel(voxel, emit);
       }
     }
   }

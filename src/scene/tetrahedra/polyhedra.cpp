@@ -13,7 +13,7 @@ constexpr std::size_t most_for_ears = 64;
 
 }  // namespace
 
-const std::vector<std::array<std::int32_t, 3>>& PolygonCut::operator()(
+const std::vector<std::array<std::int32_t, 3>>& PolygonTriangulation::operator()(
     std::span<const std::int32_t> face) {
   triangles_.clear();
   const std::size_t count = face.size();
@@ -26,14 +26,14 @@ const std::vector<std::array<std::int32_t, 3>>& PolygonCut::operator()(
     loop_.push_back(face[(first + (forward ? i : count - i)) % count]);
   }
   if (count < 4 || count > most_for_ears) {
-    cut_from_smallest();
+    fan_from_smallest();
     return triangles_;
   }
   project();
   if (count == 4) {
     const bool at_smallest = quality(1) > 0 && quality(3) > 0;
     if (at_smallest || !(quality(0) > 0 && quality(2) > 0)) {
-      cut_from_smallest();
+      fan_from_smallest();
     } else {  // a dart, or a triangle with a point in the middle of an edge
       triangles_ = {{loop_[3], loop_[0], loop_[1]}, {loop_[1], loop_[2], loop_[3]}};
     }
@@ -52,7 +52,7 @@ const std::vector<std::array<std::int32_t, 3>>& PolygonCut::operator()(
     if (most <= 0) {  // it crosses itself, or has no area
       triangles_.clear();
       loop_ = whole;
-      cut_from_smallest();
+      fan_from_smallest();
       return triangles_;
     }
     const std::size_t n = loop_.size();
@@ -64,13 +64,13 @@ const std::vector<std::array<std::int32_t, 3>>& PolygonCut::operator()(
   return triangles_;
 }
 
-void PolygonCut::cut_from_smallest() {
+void PolygonTriangulation::fan_from_smallest() {
   for (std::size_t i = 1; i + 1 < loop_.size(); ++i) {
     triangles_.push_back({loop_[0], loop_[i], loop_[i + 1]});
   }
 }
 
-void PolygonCut::project() {
+void PolygonTriangulation::project() {
   // Twice the area of the face as seen along each axis (M. E. Newell).
   const Vec3<double> origin = points_[loop_[0]];
   Vec3<double> normal{};
@@ -94,7 +94,7 @@ void PolygonCut::project() {
   }
 }
 
-double PolygonCut::quality(std::size_t ear) const {
+double PolygonTriangulation::quality(std::size_t ear) const {
   const std::size_t n = loop_.size(), before = (ear + n - 1) % n, after = (ear + 1) % n;
   const Place a = place_[before], b = place_[ear], c = place_[after];
   const auto area = [](Place p, Place q, Place r) {
@@ -124,8 +124,8 @@ std::int32_t PolyhedronApex::operator()(const GridCell& cell,
   const std::int32_t* face = cell.points.data();
   for (std::size_t f = 0; f < turned_.size(); ++f) {
     const std::int32_t count = cell.layout[2 + f];
-    for (auto t : cut_({face, static_cast<std::size_t>(count)})) {
-      if (cut_.reversed() != (turned_[f] == 1)) std::swap(t[1], t[2]);
+    for (auto t : triangulation_({face, static_cast<std::size_t>(count)})) {
+      if (triangulation_.reversed() != (turned_[f] == 1)) std::swap(t[1], t[2]);
       triangles_.push_back(t);
     }
     face += count;

@@ -20,9 +20,9 @@
 namespace pellucid {
 
 /// Cuts faces of any number of points into triangles. It keeps memory between them.
-class PolygonCut {
+class PolygonTriangulation {
  public:
-  explicit PolygonCut(const Vec3<double>* points) noexcept : points_(points) {}
+  explicit PolygonTriangulation(const Vec3<double>* points) noexcept : points_(points) {}
 
   /// Returns the triangles of a face, two less than its points; valid until the next call.
   ///
@@ -39,7 +39,7 @@ class PolygonCut {
     double x, y;
   };
 
-  void cut_from_smallest();
+  void fan_from_smallest();
   void project();
   /// Returns the quality of the triangle at a point of the remaining face as an ear; 0: it is none.
   double quality(std::size_t ear) const;
@@ -54,7 +54,8 @@ class PolygonCut {
 /// Finds the points from which polyhedra are cut. It keeps memory between them.
 class PolyhedronApex {
  public:
-  explicit PolyhedronApex(const Vec3<double>* points) noexcept : points_(points), cut_(points) {}
+  explicit PolyhedronApex(const Vec3<double>* points) noexcept
+      : points_(points), triangulation_(points) {}
 
   /// -1 where all tetrahedra to `mean` lie on the same side of their triangles, as they should;
   /// else the first of the cell's points of which that is true; -1 if there is none. `distinct` are
@@ -73,7 +74,7 @@ class PolyhedronApex {
   double six_volumes(const std::array<std::int32_t, 3>& triangle, const Vec3<double>& apex) const;
 
   const Vec3<double>* points_;
-  PolygonCut cut_;
+  PolygonTriangulation triangulation_;
   std::vector<Edge> edges_;
   std::vector<signed char> turned_;  ///< of each face: 1 where it has to be turned, -1: not known
   std::vector<std::array<std::int32_t, 3>> triangles_;
@@ -81,10 +82,11 @@ class PolyhedronApex {
 
 /// Calls emit(middle, a, b, c) for the tetrahedra of a polyhedron.
 template <class Emit>
-void cut_polyhedron(const GridCell& cell, std::int32_t middle, PolygonCut& cut, const Emit& emit) {
+void tetrahedralize_polyhedron(const GridCell& cell, std::int32_t middle,
+                               PolygonTriangulation& triangles_of, const Emit& emit) {
   const std::int32_t* face = cell.points.data();
   for (const std::int32_t count : cell.layout.subspan(2)) {
-    for (const auto& t : cut({face, static_cast<std::size_t>(count)})) {
+    for (const auto& t : triangles_of({face, static_cast<std::size_t>(count)})) {
       emit(middle, t[0], t[1], t[2]);
     }
     face += count;

@@ -2,7 +2,7 @@
 #include <array>
 #include <cstddef>
 
-#include "pellucid/scene/cut_cells.h"
+#include "pellucid/scene/tetrahedralize.h"
 
 namespace pellucid {
 namespace {

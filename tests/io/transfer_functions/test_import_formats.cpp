@@ -385,15 +385,15 @@ TEST(Import, CountsItsDeviationsInThePixel) {
   EXPECT_EQ(std::get<OpacityTable>(again).extinction_deviation, f.table.extinction_deviation);
 }
 
-TEST(Import, KnowsForeignFromOwn) {
+TEST(Import, TellsOtherFormatsFromOurs) {
   for (const char* own : {R"({"points": []})", R"({"gaussians": [{"center": [1]}]})",
                           R"({"transfer_function": {}})", R"({"preset": "x-ray"})", "{", ""}) {
-    EXPECT_FALSE(is_foreign_transfer_function(own)) << own;
+    EXPECT_FALSE(needs_import(own)) << own;
   }
-  for (const char* foreign :
+  for (const char* other :
        {R"([{"RGBPoints": []}])", R"({"volumeProperties": []})", R"({"valueRange": [0, 1]})",
         R"({"gaussians": [{"position": 1}]})", "<ColorMap>", "1,2,3", "1\n1\n"}) {
-    EXPECT_TRUE(is_foreign_transfer_function(foreign)) << foreign;
+    EXPECT_TRUE(needs_import(other)) << other;
   }
 }
 

@@ -9,11 +9,11 @@
 #include <random>
 #include <string>
 
-#include "src/io/transfer_functions/foreign_curves.h"
+#include "src/io/transfer_functions/import_curves.h"
 #include "src/io/transfer_functions/jet.h"
 #include "tests/support/accuracy.h"
 
-namespace pellucid::foreign::test_jet {
+namespace pellucid::imported::test_jet {
 namespace {
 
 /// Holds value, chord and the bound together for a formula f of one variable between a and b.
@@ -80,4 +80,4 @@ TEST(Jet, OfWhatIsUnknownIsNotSmall) {
 }
 
 }  // namespace
-}  // namespace pellucid::foreign::test_jet
+}  // namespace pellucid::imported::test_jet

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "pellucid/scene/error.h"
-#include "src/io/transfer_functions/foreign_shaped.h"
+#include "src/io/transfer_functions/import_shaped.h"
 
-namespace pellucid::foreign::test_shaped {
+namespace pellucid::imported::test_shaped {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -158,4 +158,4 @@ TEST(ShapedFunction, WithoutNodesIsZeroAndARampOfDataIsVtks) {
 }
 
 }  // namespace
-}  // namespace pellucid::foreign::test_shaped
+}  // namespace pellucid::imported::test_shaped

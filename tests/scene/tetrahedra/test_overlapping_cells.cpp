@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pellucid/scene/cut_cells.h"
+#include "pellucid/scene/tetrahedralize.h"
 
 namespace pellucid::test_overlapping_cells {
 namespace {

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "src/scene/tetrahedra/cut_order.h"
+#include "src/scene/tetrahedra/tetrahedra_order.h"
 #include "tests/scene/in_threads.h"
 
 namespace pellucid::test_spatial_order {
@@ -82,46 +82,47 @@ TEST(InOrder, IsThatOfAStableSortForAnyNumberOfThreads) {
 // 20³ points at random: neighbours in memory are neighbours in space, and nothing is lost.
 TEST(SpatialOrder, KeepsTetrahedraAndBringsThemTogether) {
   std::mt19937 random(5);
-  CellCut cut;
+  TetrahedralizedCells cells;
   for (int i = 0; i < 8000; ++i) {
     const auto any = [&] { return 1e-9 * static_cast<double>(random()); };
     const double x = any(), y = any();
-    cut.points.push_back({x, y, any()});
+    cells.points.push_back({x, y, any()});
   }
-  cut.points[17].x = infinity;
-  cut.tetrahedra.push_back({17, 1, 2, 3});
-  cut.cell.push_back(0);
+  cells.points[17].x = infinity;
+  cells.tetrahedra.push_back({17, 1, 2, 3});
+  cells.cell.push_back(0);
   for (std::int32_t i = 0; i < 20000; ++i) {
     const auto any = [&] { return static_cast<std::int32_t>(random() % 8000); };
-    cut.tetrahedra.push_back({any(), any(), any(), any()});
-    cut.cell.push_back(i + 1);
+    cells.tetrahedra.push_back({any(), any(), any(), any()});
+    cells.cell.push_back(i + 1);
   }
-  const CellCut given = cut;
-  put_in_spatial_order(cut, in_threads);
-  const std::vector<std::int32_t>& numbers = cut.numbers;
-  CellCut alone = given;
+  const TetrahedralizedCells given = cells;
+  put_in_spatial_order(cells, in_threads);
+  const std::vector<std::int32_t>& numbers = cells.numbers;
+  TetrahedralizedCells alone = given;
   put_in_spatial_order(alone, {});
   EXPECT_EQ(alone.numbers, numbers);
-  EXPECT_EQ(alone.tetrahedra, cut.tetrahedra);
-  EXPECT_EQ(alone.cell, cut.cell);
+  EXPECT_EQ(alone.tetrahedra, cells.tetrahedra);
+  EXPECT_EQ(alone.cell, cells.cell);
   for (std::size_t p = 0; p < numbers.size(); ++p) {
-    ASSERT_EQ(cut.points[p], given.points[static_cast<std::size_t>(numbers[p])]);
-    ASSERT_EQ(alone.points[p], cut.points[p]);
+    ASSERT_EQ(cells.points[p], given.points[static_cast<std::size_t>(numbers[p])]);
+    ASSERT_EQ(alone.points[p], cells.points[p]);
   }
 
-  ASSERT_EQ(cut.tetrahedra.size(), given.tetrahedra.size());
+  ASSERT_EQ(cells.tetrahedra.size(), given.tetrahedra.size());
   std::vector<char> seen(given.tetrahedra.size(), 0);
-  for (std::size_t t = 0; t < cut.tetrahedra.size(); ++t) {
-    const auto was = static_cast<std::size_t>(cut.cell[t]);
+  for (std::size_t t = 0; t < cells.tetrahedra.size(); ++t) {
+    const auto was = static_cast<std::size_t>(cells.cell[t]);
     ++seen[was];
     for (std::size_t c = 0; c < 4; ++c) {
-      EXPECT_EQ(numbers[static_cast<std::size_t>(cut.tetrahedra[t][c])], given.tetrahedra[was][c]);
+      EXPECT_EQ(numbers[static_cast<std::size_t>(cells.tetrahedra[t][c])],
+                given.tetrahedra[was][c]);
     }
   }
   EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<int>(seen.size()));
   EXPECT_EQ(numbers.back(), 17);
 
-  const auto way = [](const CellCut& of, auto&& place, std::size_t count) {
+  const auto way = [](const TetrahedralizedCells& of, auto&& place, std::size_t count) {
     double sum = 0;
     for (std::size_t i = 1; i < count; ++i) {
       const double step = length(place(of, i) - place(of, i - 1));
@@ -129,16 +130,16 @@ TEST(SpatialOrder, KeepsTetrahedraAndBringsThemTogether) {
     }
     return sum;
   };
-  const auto point = [](const CellCut& of, std::size_t i) { return of.points[i]; };
-  EXPECT_LT(way(cut, point, 8000), 0.15 * way(given, point, 8000));
-  const auto middle = [](const CellCut& of, std::size_t i) {
+  const auto point = [](const TetrahedralizedCells& of, std::size_t i) { return of.points[i]; };
+  EXPECT_LT(way(cells, point, 8000), 0.15 * way(given, point, 8000));
+  const auto middle = [](const TetrahedralizedCells& of, std::size_t i) {
     Vec3<double> sum;
     for (const std::int32_t c : of.tetrahedra[i]) {
       sum = sum + of.points[static_cast<std::size_t>(c)];
     }
     return sum;
   };
-  EXPECT_LT(way(cut, middle, 20001), 0.2 * way(given, middle, 20001));
+  EXPECT_LT(way(cells, middle, 20001), 0.2 * way(given, middle, 20001));
 }
 
 }  // namespace

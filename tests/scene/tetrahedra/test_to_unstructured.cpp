@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-#include "pellucid/scene/cut_cells.h"
+#include "pellucid/scene/tetrahedralize.h"
 #include "tests/scene/expect_error.h"
 
 namespace pellucid::test_to_unstructured {

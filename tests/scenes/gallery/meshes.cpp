@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "pellucid/io/read_mesh.h"
-#include "pellucid/scene/cut_cells.h"
+#include "pellucid/scene/tetrahedralize.h"
 #include "tests/scenes/gallery.h"
 #include "tests/scenes/meshes.h"
 #include "tests/support/test_data.h"
