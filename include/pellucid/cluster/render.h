@@ -64,8 +64,8 @@ void agreed(Communicator& ranks, const std::function<void()>& work);
 /// Throws AgreedError on all ranks unless the texts of all are equal; `what` names what they are
 /// of: "the version". A difference is reported with both.
 void check_equal(Communicator& ranks, const std::string& what, const std::string& own);
-/// The same of several texts, each behind what it is of. Ranks exchange a checksum of them, and the
-/// texts themselves if it differs.
+/// Compares several texts likewise, each behind what it is of. Ranks exchange a checksum of them,
+/// and the texts themselves if it differs.
 void check_equal(Communicator& ranks, const std::vector<std::pair<std::string, std::string>>& own);
 
 }  // namespace pellucid

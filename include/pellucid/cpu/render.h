@@ -81,7 +81,7 @@ struct Machine {
 
 /// Progress of a frame: whom it tells, and by what it is cancelled.
 struct FrameMonitor {
-  /// Called occasionally with the finished fraction in [0, 1], by one thread at a time. If it
+  /// Receives the finished fraction in [0, 1] now and then, from one thread at a time. If it
   /// returns false, the frame is cancelled and render() throws Cancelled.
   std::function<bool(double)> progress{};
   /// Cancels the frame, from any thread: threads stop within some 5 ms of work, and render() throws
@@ -90,7 +90,7 @@ struct FrameMonitor {
   /// Number of preview levels: every 2ⁿ-th pixel along each axis is rendered first, then the pixels
   /// half-way between them, and so on. No pixel is rendered twice; the image is bitwise the same.
   int preview = 0;
-  /// Called once per tile, by one thread at a time and never during `progress`. The tiles of a
+  /// Receives each tile once, from one thread at a time and never during `progress`. The tiles of a
   /// level follow all tiles of the coarser level. No thread waits for the call. If it returns
   /// false, the frame is cancelled as above; other threads finish their current tiles.
   std::function<bool(const TileResult&)> tile{};

@@ -91,7 +91,8 @@ class SteppedFrame {
 /// run at the same time share the cores.
 class Renderer {
  public:
-  /// `threads`: of frames whose options name none; 0: one per core. Throws Error if it is negative.
+  /// Makes a renderer that keeps nothing yet. `threads`: of frames whose options name none; 0: one
+  /// per core. Throws Error if it is negative.
   explicit Renderer(int threads = 0);
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;

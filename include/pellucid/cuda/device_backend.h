@@ -25,7 +25,7 @@ class DeviceBackend {
   /// Returns memory of the device, aligned for any type.
   virtual void* allocate(std::size_t bytes) = 0;
   virtual void release(void* memory) noexcept = 0;
-  /// Copy between the host and the device; the copy is done when they return.
+  /// Copies bytes between the host and the device; the copy is done when the function returns.
   virtual void upload(void* to, const void* from, std::size_t bytes) = 0;
   virtual void download(void* to, const void* from, std::size_t bytes) = 0;
   /// Sets memory of the device to zero.

@@ -164,7 +164,7 @@ void for_each_array(DeviceScene& scene, Visit&& visit) {
   }
 }
 
-/// The same for the arrays of a table of several variables.
+/// Visits likewise the arrays of a table of several variables.
 template <class Visit>
 void for_each_table_array(ChannelTable<double>& table, Visit&& visit) {
   visit(table.table.value, std::int64_t{table.table.count});

@@ -16,7 +16,7 @@ namespace pellucid {
 /// thread at a time.
 class ResidentArrays {
  public:
-  /// The backend must outlive the object.
+  /// Holds no copies yet. The backend must outlive the object.
   explicit ResidentArrays(DeviceBackend& backend) : backend_(backend) {}
   ResidentArrays(const ResidentArrays&) = delete;
   ResidentArrays& operator=(const ResidentArrays&) = delete;

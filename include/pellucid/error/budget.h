@@ -29,7 +29,8 @@ template <class T>
 class RayBudget {
  public:
   RayBudget() = default;
-  /// `tolerance` >= 0 is that of the pixel; `length` >= 0 that of the ray inside the data.
+  /// Begins a ray. `tolerance` >= 0 is that of the pixel; `length` >= 0 that of the ray inside the
+  /// data.
   PELLUCID_HD RayBudget(T tolerance, T length) noexcept
       : opacity_pot_(T(0.5) * tolerance), length_pot_(T(0.5) * tolerance), length_(length) {}
 

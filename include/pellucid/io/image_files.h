@@ -12,8 +12,8 @@
 
 namespace pellucid {
 
-/// All writers write to a temporary file beside the target and rename it, so that a failure leaves
-/// no partial file. They throw Error.
+// All writers write to a temporary file beside the target and rename it, so that a failure leaves
+// no partial file. They throw Error.
 
 /// Writes 8-bit sRGB with alpha that is not premultiplied. If `background` is given,
 /// composites over it and writes no alpha.

@@ -41,12 +41,12 @@ struct ReadOptions {
   /// DICOM: series to read from a folder: its number as in list_dicom_series(), from 1, its UID, or
   /// a unique end of the UID. OME-TIFF: the image to read, by its number from 1 or its name.
   std::optional<std::string> series;
-  /// Called with the description of the whole; returns the part that is wanted, which is read in
-  /// its place. Uncompressed files are read there alone (VolumeOutline::reads_parts); of others the
+  /// Takes the description of the whole and returns the part that is wanted, which is read in its
+  /// place. Uncompressed files are read there alone (VolumeOutline::reads_parts); of others the
   /// rest is let go of. Empty: all of it.
   std::function<IndexBox(const Volume::Description&)> part;
-  /// Called with one line for each assumption about what the files do not say, and for each part
-  /// that is left out.
+  /// Receives one line for each assumption about what the files do not say, and for each part that
+  /// is left out.
   std::function<void(const std::string&)> note;
 };
 

@@ -76,7 +76,7 @@ class MultivariateRayIntegrator {
                position_error);
   }
 
-  /// The same for any stretch. It has a length() in world units, panel(begin, end, demand,
+  /// Adds the panels of any stretch. It has a length() in world units, panel(begin, end, demand,
   /// allowance): the PanelSegment of a part, or where to cut it, and most_panels(): of a ray, after
   /// which the tolerance is not proved any more. Estimates then decide where to cut, and errors are
   /// still charged with what is proved: to 1e-3, for half as many panels again. After twice as

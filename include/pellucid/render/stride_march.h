@@ -10,8 +10,8 @@ namespace pellucid {
 /// by cell elsewhere.
 class StrideMarch {
  public:
-  /// `direction` is the ray's direction per world length, in grid coordinates. `least_width` and
-  /// `mean_width` are the smallest and the mean cell width along each axis.
+  /// Prepares for a ray. `direction` is the ray's direction per world length, in grid coordinates.
+  /// `least_width` and `mean_width` are the smallest and the mean cell width along each axis.
   PELLUCID_HD StrideMarch(Vec3<double> direction, Vec3<double> least_width,
                           Vec3<double> mean_width) noexcept
       : direction_(direction), least_width_(least_width) {

@@ -51,7 +51,7 @@ std::optional<ErrorCheck> check_errors(const Image& a, const Image& b);
 /// Pixels with a channel that differs by more than the tolerance or is not finite in one image.
 std::size_t pixels_over(const Image& a, const Image& b, double tolerance);
 
-/// |a − b| per channel, of the same size; NaN where it is not finite.
+/// Returns |a − b| per channel, of the same size; NaN where it is not finite.
 Image difference_image(const Image& a, const Image& b);
 
 /// Returns an opaque grey picture of the largest of the four channels' |a − b| times `scale`, cut

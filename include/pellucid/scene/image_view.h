@@ -20,7 +20,7 @@ struct ImageView {
   float* values = nullptr;         ///< null: not requested
 
   ImageView() = default;
-  /// The memory of an image, which must outlive the view and keep its size.
+  /// Views the memory of an image, which must outlive the view and keep its size.
   explicit ImageView(Image& image) noexcept
       : width(image.width),
         height(image.height),

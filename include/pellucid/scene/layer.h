@@ -114,10 +114,10 @@ struct Shared {
 struct Layer {
   Layer() = default;
   Layer(LayerContent wanted) : content(std::move(wanted)) {}
-  /// A volume with the look of the kind of data that it seems to be: function, shading, surfaces or
-  /// labels of choose_look().
+  /// Makes a layer of a volume with the look of the kind of data that it seems to be: function,
+  /// shading, surfaces or labels of choose_look().
   explicit Layer(Shared<Volume> volume);
-  /// A mesh with its look, likewise.
+  /// Makes a layer of a mesh with its look, likewise.
   explicit Layer(Shared<MeshChannels> mesh);
   Layer(Shared<Volume> volume, Shared<TransferFunction> function);
   Layer(Shared<Channels> channels, Shared<MultivariateTransferFunction> function);

@@ -134,8 +134,8 @@ struct SceneSettings {
 /// matter, except among projected ones (Layer::projection).
 struct Scene : SceneSettings {
   Scene() = default;
-  /// A scene of one layer, seen by default_camera() of visible_corners(). Throws Error unless the
-  /// layer passes check_layer(), and if a size is not in [1, 65536].
+  /// Makes a scene of one layer, seen by default_camera() of visible_corners(). Throws Error unless
+  /// the layer passes check_layer(), and if a size is not in [1, 65536].
   explicit Scene(Layer layer, ImageSize wanted = {});
 
   std::vector<Layer> layers;

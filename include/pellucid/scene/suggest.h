@@ -30,8 +30,8 @@ struct SuggestControl {
   /// Looks at 65 536 data points and a sixteenth of the lines, and fits three components at most
   /// where their number is open: five to ten times as fast, for a picture that is replaced soon.
   bool quick = false;
-  /// Called by the calling thread with the fraction of the work that is done, from 0 to 1, a few
-  /// times; may be empty. What it throws ends the suggestion.
+  /// Receives the fraction of the work that is done, from 0 to 1, a few times, on the calling
+  /// thread; may be empty. What it throws ends the suggestion.
   std::function<void(double fraction)> progress{};
 };
 

@@ -10,7 +10,7 @@
 
 namespace pellucid {
 
-/// Names of the views along the axes of an LPS world, and "oblique".
+/// Returns the names of the views along the axes of an LPS world, and "oblique".
 const std::vector<std::string>& view_names();
 
 /// Returns a perspective camera on the named side of a box (world_corners) that just holds it, with

@@ -21,7 +21,8 @@ namespace pellucid {
 template <class A>
 class FrontToBackCompositor {
  public:
-  /// `stop` >= 0 is the transparency at which the ray may end. Zero: only an opaque ray ends.
+  /// Begins a ray. `stop` >= 0 is the transparency at which the ray may end. Zero: only an opaque
+  /// ray ends.
   PELLUCID_HD explicit FrontToBackCompositor(A stop = A(0)) noexcept : stop_(stop) {}
 
   /// Composites the next segment.

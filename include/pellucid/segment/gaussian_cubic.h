@@ -36,7 +36,7 @@ struct LineReplacementError {
 template <class T, int Most = max_channels>
 class GaussianCubic {
  public:
-  /// `data` holds one cubic per channel of the primitive.
+  /// Maps the data to K (v - c). `data` holds one cubic per channel of the primitive.
   template <class S>
   PELLUCID_HD GaussianCubic(const Gaussian<S>& primitive, const CubicBernstein<T>* data) noexcept
       : rows_(primitive.rows) {
@@ -47,7 +47,8 @@ class GaussianCubic {
     }
     bound();
   }
-  /// `first` is p at u = 0, `difference` the differences of consecutive Bernstein coefficients.
+  /// Takes p itself: `first` is p at u = 0, `difference` the differences of consecutive Bernstein
+  /// coefficients.
   PELLUCID_HD GaussianCubic(int rows, const T* first, const T (*difference)[Most]) noexcept
       : rows_(rows) {
     for (int i = 0; i < this->rows(); ++i) {

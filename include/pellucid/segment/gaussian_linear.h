@@ -10,7 +10,7 @@ namespace pellucid {
 template <class T>
 class GaussianLinear {
  public:
-  /// `data` holds the data of each channel of the primitive.
+  /// Maps the data to K (v - c). `data` holds the data of each channel of the primitive.
   template <class S>
   PELLUCID_HD GaussianLinear(const Gaussian<S>& primitive, const LinearBernstein<T>* data) noexcept
       : rows_(primitive.rows) {

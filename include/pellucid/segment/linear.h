@@ -53,7 +53,7 @@ template <class T>
 struct ThinSums {
   T b0, h1, f1;
   PELLUCID_HD ThinSums(T h, T g) noexcept : ThinSums(h, g, h) {}
-  /// `reach` >= max(h, |g|), for arguments with |g| above h; h >= 0.
+  /// Sums the series. `reach` >= max(h, |g|), for arguments with |g| above h; h >= 0.
   PELLUCID_HD ThinSums(T h, T g, T reach) noexcept {
     // With r = reach the tail of F1 after N terms is below r^N e^{r/2}/(2N+3)!! (proof in 3.3):
     // N = 8 and 15 leave less than u/10 of the weights up to r = 1, N = 4 and 8 up to r = 0.05.

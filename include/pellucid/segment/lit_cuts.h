@@ -117,8 +117,8 @@ struct LitPiece {
   double first, last;  ///< shares of the stretch
 
   PELLUCID_HD double length() const noexcept { return (last - first) * parts.length(); }
-  /// Bounds that are proved come together as slowly as panels get short: a ray takes some 10 ms
-  /// until they are given up.
+  /// Returns how many panels a ray may take until proved bounds are given up: they come together as
+  /// slowly as panels get short, and so many take some 10 ms.
   PELLUCID_HD static long most_panels() noexcept { return 4096; }
   template <class Allowance>
   PELLUCID_HD PanelSegment<double> panel(double begin, double end,

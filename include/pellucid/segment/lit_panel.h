@@ -66,7 +66,7 @@ PELLUCID_HD Rgb<T> color_of_every_other(const PanelNodes<7, T>& nodes) noexcept 
 template <class T>
 class LitPanel {
  public:
-  /// `layer`: on [begin, end] of the stretch.
+  /// Prepares a panel. `layer`: on [begin, end] of the stretch.
   PELLUCID_HD LitPanel(const LitStretch<T>& stretch, const LitLayer<T>* layer, T begin, T end,
                        const PanelDemand<T>& demand) noexcept
       : stretch_(stretch),
@@ -252,7 +252,7 @@ class LitPanel {
     }
   }
 
-  /// Bounds the factors of the gradient opacity.
+  /// Multiplies bounds by those on the factors of the gradient opacity.
   PELLUCID_HD void weaken(const LitLayer<T>& layer, T& most, T& off,
                           Bounds<T>& gaussians) const noexcept {
     const PiecewiseLinear<T>& factor = *layer.gradient_opacity;

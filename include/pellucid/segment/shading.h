@@ -211,8 +211,8 @@ struct GradientCone {
   }
 };
 
-/// |n·d| on a stretch: d of length 1, off by at most `off`; the normal's denominator within
-/// `lengths`, |g| over that within `shares`. Within both of these:
+/// Returns bounds on |n·d| on a stretch: d of length 1, off by at most `off`; the normal's
+/// denominator within `lengths`, |g| over that within `shares`. Within both of these:
 ///
 /// - g·d within its hull, over the denominator;
 /// - the share times the cosine of an angle between d and a direction of the cone, m_i = d_i·d: of

@@ -8,8 +8,8 @@ namespace pellucid {
 
 namespace detail {
 
-/// (e^r - 1 - r) / r² for |r| <= ln 2 / 2: minimax for the error that it makes in e^r, relative,
-/// 0.07 u (float), 0.1 u (double) with the coefficients rounded.
+/// Returns (e^r - 1 - r) / r² for |r| <= ln 2 / 2: minimax for the error that it makes in e^r,
+/// relative, 0.07 u (float), 0.1 u (double) with the coefficients rounded.
 template <int N>
 PELLUCID_ALWAYS_INLINE Batch<float, N> exp_remainder(Batch<float, N> r,
                                                      Batch<float, N> r_squared) noexcept {
@@ -49,8 +49,8 @@ struct ExpReduction<double> {
 
 }  // namespace detail
 
-/// e^x = 2^n e^r, |r| <= ln 2 / 2, with e^r = 1 + r + r² P(r) summed so that only the last addition
-/// rounds by more than a tenth of u. e^-∞ = 0, e^∞ = ∞, NaN gives NaN.
+/// Returns e^x = 2^n e^r, |r| <= ln 2 / 2, with e^r = 1 + r + r² P(r) summed so that only the last
+/// addition rounds by more than a tenth of u. e^-∞ = 0, e^∞ = ∞, NaN gives NaN.
 ///
 /// Largest relative error 1.1 u where the result is normal; half a denormal step more where it is
 /// not (nothing is flushed to zero). Asserted in tests/simd for every width.
@@ -72,7 +72,8 @@ PELLUCID_ALWAYS_INLINE Batch<T, N> exp(Batch<T, N> x) noexcept {
   return scale_by_power_of_two(sum + rest, n);
 }
 
-/// Lane by lane, by the library's: for what is not worth a kernel of its own.
+/// Returns log(1 + x) lane by lane, by the library's function: for what is not worth a kernel of
+/// its own.
 template <class T, int N>
 PELLUCID_ALWAYS_INLINE Batch<T, N> log1p(Batch<T, N> x) noexcept {
   T lane[N];

@@ -14,11 +14,11 @@ class BatchMask {
   using Native = detail::Native<N>;
   static constexpr int lanes = N;
 
-  /// All false.
+  /// Makes a mask that is false in all lanes.
   PELLUCID_ALWAYS_INLINE BatchMask() noexcept : native(Native::none()) {}
   PELLUCID_ALWAYS_INLINE explicit BatchMask(bool all_lanes) noexcept
       : native(all_lanes ? Native::every() : Native::none()) {}
-  /// Lane 0 is the lowest bit.
+  /// Returns the mask of these bits; lane 0 is the lowest one.
   PELLUCID_ALWAYS_INLINE static BatchMask from_bits(unsigned bits) noexcept {
     return from_native(Native::mask_of_bits(bits));
   }
@@ -44,7 +44,7 @@ class BatchMask {
   PELLUCID_ALWAYS_INLINE friend BatchMask operator!(BatchMask a) noexcept {
     return from_native(Native::both_not(Native::every(), a.native));
   }
-  /// Lane by lane, as of two bool.
+  /// Compares lane by lane, as two bool are compared.
   PELLUCID_ALWAYS_INLINE friend BatchMask operator==(BatchMask a, BatchMask b) noexcept {
     return !(a ^ b);
   }

@@ -6,7 +6,7 @@
 #if PELLUCID_HAS_BATCH_4
 namespace pellucid {
 
-/// base[index] of every lane. Reads nothing else.
+/// Returns base[index] of every lane. Reads nothing else.
 template <class T, int N>
 PELLUCID_ALWAYS_INLINE Batch<T, N> gather(const T* base, Batch<std::int32_t, N> index) noexcept {
   using Native = detail::Native<N>;
@@ -19,7 +19,7 @@ PELLUCID_ALWAYS_INLINE Batch<T, N> gather(const T* base, Batch<std::int32_t, N> 
   }
 }
 
-/// gather() of a small table; without a load per lane where 16 numbers fit into registers.
+/// Returns gather() of a small table; without a load per lane where 16 numbers fit into registers.
 template <class T, std::size_t Entries, int N>
 PELLUCID_ALWAYS_INLINE Batch<T, N> lookup(const T (&table)[Entries],
                                           Batch<std::int32_t, N> index) noexcept {
@@ -48,9 +48,9 @@ struct SameOffset {
   PELLUCID_ALWAYS_INLINE SameOffset operator+(int) const noexcept { return *this; }
 };
 
-/// Lane l gets base[l][offset[l]] and base[l][offset[l] + 1] as floats, each rounded once; reads
-/// exactly those two values. Value: an integer of 8, 16 or 32 bits, float or double. One load per
-/// lane for both is half the price of two gathers. Offset: const std::int32_t*, or SameOffset.
+/// Loads base[l][offset[l]] and base[l][offset[l] + 1] into lane l as floats, each rounded once;
+/// reads exactly those two values. Value: an integer of 8, 16 or 32 bits, float or double. One load
+/// per lane for both is half the price of two gathers. Offset: const std::int32_t*, or SameOffset.
 template <class Value, int N, class Offset>
 PELLUCID_ALWAYS_INLINE void gather_pairs(const Value* const* base, Offset offset,
                                          Batch<float, N>& first, Batch<float, N>& second) noexcept {
@@ -133,9 +133,9 @@ PELLUCID_ALWAYS_INLINE void gather_pairs_in_rows(const float* const* base,
 
 }  // namespace detail
 
-/// gather_pairs() of several rows: lane l gets base[l][offset[l] + row[k]] in out[2 k], and the
-/// value behind it in out[2 k + 1]; the numbers of rows are of 32 bits. By gathers where the
-/// processor is good at them.
+/// Loads several rows as gather_pairs() does: base[l][offset[l] + row[k]] goes to lane l of out[2
+/// k], and the value behind it to out[2 k + 1]; the numbers of rows are of 32 bits. By gathers
+/// where the processor is good at them.
 template <class Value, int N, std::size_t Rows>
 PELLUCID_ALWAYS_INLINE void pairs_in_rows(const Value* const* base, const std::int32_t* offset,
                                           const std::ptrdiff_t (&row)[Rows],
@@ -148,7 +148,7 @@ PELLUCID_ALWAYS_INLINE void pairs_in_rows(const Value* const* base, const std::i
   detail::load_pairs_in_rows<Value, N>(base, offset, row, out);
 }
 
-/// out[k] = base[K index + k] of every lane, k < K, K a multiple of 4: rows are loaded and
+/// Sets out[k] = base[K index + k] of every lane, k < K, K a multiple of 4: rows are loaded and
 /// transposed, which takes far less than K gathers. Reads nothing else.
 template <int K, int N>
 PELLUCID_ALWAYS_INLINE void load_records(const float* base, Batch<std::int32_t, N> index,
@@ -165,7 +165,7 @@ PELLUCID_ALWAYS_INLINE void load_records(const float* base, Batch<std::int32_t, 
   }
 }
 
-/// The same of whole numbers.
+/// Loads whole numbers likewise.
 template <int K, int N>
 PELLUCID_ALWAYS_INLINE void load_records(const std::int32_t* base, Batch<std::int32_t, N> index,
                                          Batch<std::int32_t, N>* out) noexcept {
@@ -183,7 +183,7 @@ PELLUCID_ALWAYS_INLINE void load_records(const std::int32_t* base, Batch<std::in
   }
 }
 
-/// The same of doubles.
+/// Loads doubles likewise.
 template <int K, int N>
 PELLUCID_ALWAYS_INLINE void load_records(const double* base, Batch<std::int32_t, N> index,
                                          Batch<double, N>* out) noexcept {
@@ -197,8 +197,7 @@ PELLUCID_ALWAYS_INLINE void load_records(const double* base, Batch<std::int32_t,
   for (int j = 0; j < 4; ++j) out[j] = Number(low[j], high[j]);
 }
 
-/// The other way round: base[K index + k] = in[k] of every lane, each of another index. Writes
-/// nothing else.
+/// Stores base[K index + k] = in[k] of every lane, each of another index. Writes nothing else.
 template <int K, int N>
 PELLUCID_ALWAYS_INLINE void store_records(const Batch<float, N>* in, float* base,
                                           Batch<std::int32_t, N> index) noexcept {
@@ -228,8 +227,8 @@ PELLUCID_ALWAYS_INLINE void store_packed(BatchMask<N> mask, Batch<T, N> x, T* to
   }
 }
 
-/// `rest`, but in the lanes of `mask` the numbers from[0], from[1], … one after the other. Reads N
-/// of them.
+/// Returns `rest`, but in the lanes of `mask` the numbers from[0], from[1], … one after the other.
+/// Reads N of them.
 template <class T, int N>
 PELLUCID_ALWAYS_INLINE Batch<T, N> load_spread(BatchMask<N> mask, const T* from,
                                                Batch<T, N> rest) noexcept {

@@ -24,13 +24,14 @@ class Batch {
                 std::is_same_v<T, std::int32_t>);
   static_assert(static_cast<int>(Register::size) * registers == N);
 
-  /// All zero.
+  /// Makes a batch of zeros.
   PELLUCID_ALWAYS_INLINE Batch() noexcept : Batch(T(0)) {}
   PELLUCID_ALWAYS_INLINE Batch(T all_lanes) noexcept requires one_register
       : part{Register(all_lanes)} {}
   PELLUCID_ALWAYS_INLINE Batch(T all_lanes) noexcept requires(!one_register)
       : part{Register(all_lanes), Register(all_lanes)} {}
-  /// T(0.5), T(1.0 / 3), T(2 * n) mean the same for a batch as for a scalar T.
+  /// Converts a number to all lanes: T(0.5), T(1.0 / 3), T(2 * n) mean the same for a batch as for
+  /// a scalar T.
   template <class S>
   requires(std::is_arithmetic_v<S> && !std::is_same_v<S, T>) PELLUCID_ALWAYS_INLINE
       explicit Batch(S all_lanes) noexcept
@@ -40,7 +41,7 @@ class Batch {
   PELLUCID_ALWAYS_INLINE Batch(Register low, Register high) noexcept requires(!one_register)
       : part{low, high} {}
 
-  /// N consecutive numbers, of any alignment.
+  /// Loads N consecutive numbers, of any alignment.
   PELLUCID_ALWAYS_INLINE static Batch load(const T* from) noexcept {
     if constexpr (one_register) {
       return Batch(Register::load_unaligned(from));
@@ -52,7 +53,7 @@ class Batch {
     part[0].store_unaligned(to);
     if constexpr (!one_register) part[1].store_unaligned(to + N / 2);
   }
-  /// Through memory: for what is done now and then.
+  /// Returns the number of a lane, through memory: for what is done now and then.
   PELLUCID_ALWAYS_INLINE T operator[](int lane) const noexcept {
     T all[N];
     store(all);
@@ -100,7 +101,7 @@ class Batch {
   PELLUCID_ALWAYS_INLINE friend Batch operator|(Batch a, Batch b) noexcept requires(!is_floating) {
     return Batch(a.part[0] | b.part[0]);
   }
-  /// By the same number of bits, 0 ... 31, in every lane; to the right with the sign.
+  /// Shifts every lane by the same number of bits, 0 ... 31; to the right with the sign.
   PELLUCID_ALWAYS_INLINE friend Batch operator<<(Batch a, int n) noexcept requires(!is_floating) {
     return Batch(Register(Native::shift_left(a.part[0], n)));
   }
@@ -185,7 +186,8 @@ class Batch {
     return a != a;
   }
 
-  /// One rounding. Lane by lane and slow where the machine has no such instruction (N = 4).
+  /// Returns a b + c with one rounding. Lane by lane and slow where the machine has no such
+  /// instruction (N = 4).
   PELLUCID_ALWAYS_INLINE friend Batch fma(Batch a, Batch b, Batch c) noexcept requires is_floating {
     if constexpr (one_register) {
       return Batch(Register(Native::fused(a.part[0], b.part[0], c.part[0])));
@@ -194,8 +196,8 @@ class Batch {
                    Register(Native::fused(a.part[1], b.part[1], c.part[1])));
     }
   }
-  /// One rounding or two, whichever is one instruction or two: for sums whose stated error holds
-  /// for either.
+  /// Returns a b + c with one rounding in one instruction or two in two, whichever there is: for
+  /// sums whose stated error holds for either.
   PELLUCID_ALWAYS_INLINE friend Batch multiply_add(Batch a, Batch b,
                                                    Batch c) noexcept requires is_floating {
     if constexpr (Native::has_fma) {
@@ -205,13 +207,13 @@ class Batch {
     }
   }
 
-  /// To the nearest whole number, ties to even.
+  /// Rounds to the nearest whole number, ties to even.
   PELLUCID_ALWAYS_INLINE friend Batch round_to_nearest(Batch a) noexcept requires is_floating {
     return map(
         a, [](Register x)
                __attribute__((always_inline)) { return Register(Native::round_to_nearest(x)); });
   }
-  /// x 2^n, rounded once; n whole, |n| <= 2^8 (float), 2^11 (double), or x NaN.
+  /// Returns x 2^n, rounded once; n whole, |n| <= 2^8 (float), 2^11 (double), or x NaN.
   PELLUCID_ALWAYS_INLINE friend Batch scale_by_power_of_two(Batch x,
                                                             Batch n) noexcept requires is_floating {
     return zip(

@@ -147,7 +147,7 @@ struct Native<16> : LibraryOperations {
     high = _mm512_permutex2var_pd(first, i_high, second);
   }
 
-  /// Four blocks of four lanes.
+  /// Joins four blocks of four lanes.
   PELLUCID_ALWAYS_INLINE static __m512 blocks(__m128 a, __m128 b, __m128 c, __m128 d) noexcept {
     const __m256 low = _mm256_insertf128_ps(_mm256_castps128_ps256(a), b, 1);
     const __m256 high = _mm256_insertf128_ps(_mm256_castps128_ps256(c), d, 1);

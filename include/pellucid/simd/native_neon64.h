@@ -123,8 +123,8 @@ struct Native<4> {
     return vmulq_f64(vmulq_f64(x, p), q);
   }
 
-  /// The machine gives the nearest int of what does not fit, and 0 of NaN: both to the smallest
-  /// one.
+  /// Converts to int. The machine gives the nearest int of what does not fit, and 0 of NaN; both
+  /// become the smallest one.
   PELLUCID_ALWAYS_INLINE static Int to_int(Float x) noexcept {
     return vbslq_s32(vcltq_f32(x, vdupq_n_f32(0x1p31f)), vcvtq_s32_f32(x), vdupq_n_s32(smallest));
   }
@@ -233,7 +233,7 @@ struct Native<4> {
     const uint64x2_t fits = vcltq_f64(x, vdupq_n_f64(0x1p31));
     return vqmovn_s64(vbslq_s64(fits, vcvtq_s64_f64(x), vdupq_n_s64(smallest)));
   }
-  /// Two values of 4 bytes, whatever they are, and two doubles, rounded.
+  /// Loads two values of 4 bytes, whatever they are, or two doubles, rounded.
   template <class Value>
   PELLUCID_ALWAYS_INLINE static float32x2_t pair(const Value* from) noexcept {
     static_assert(sizeof(Value) == 4);
@@ -242,7 +242,7 @@ struct Native<4> {
   PELLUCID_ALWAYS_INLINE static float32x2_t pair(const double* from) noexcept {
     return vcvt_f32_f64(vld1q_f64(from));
   }
-  /// Four floats, or ints under that name.
+  /// Loads four floats, or ints under that name.
   PELLUCID_ALWAYS_INLINE static float32x4_t four_words(const float* from) noexcept {
     return vreinterpretq_f32_u8(vld1q_u8(reinterpret_cast<const std::uint8_t*>(from)));
   }

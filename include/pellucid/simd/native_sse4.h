@@ -10,7 +10,8 @@ namespace pellucid::detail {
 /// exactly the two values of each lane, and nothing beyond.
 template <class Value>
 struct PairBlock {
-  /// first and second value of two lanes: f0 s0 f1 s1, as 32-bit words. Values of 4 bytes.
+  /// Loads the first and second value of two lanes: f0 s0 f1 s1, as 32-bit words. Values of 4
+  /// bytes.
   PELLUCID_ALWAYS_INLINE static __m128 two_lanes(const Value* p0, const Value* p1) noexcept {
     static_assert(sizeof(Value) == 4);
     const __m128i a = _mm_loadu_si64(p0), b = _mm_loadu_si64(p1);
@@ -26,7 +27,7 @@ struct PairBlock<double> {
   }
 };
 
-/// Both values of four lanes: values of 2 bytes, one 32-bit word per lane.
+/// Loads both values of four lanes: values of 2 bytes, one 32-bit word per lane.
 template <class Value, class Offset>
 PELLUCID_ALWAYS_INLINE __m128i four_words(const Value* const* base, Offset offset) noexcept {
   static_assert(sizeof(Value) == 2);
@@ -35,7 +36,7 @@ PELLUCID_ALWAYS_INLINE __m128i four_words(const Value* const* base, Offset offse
   return _mm_unpacklo_epi64(_mm_unpacklo_epi32(a, b), _mm_unpacklo_epi32(c, d));
 }
 
-/// Both values of Lanes <= 8 lanes: values of 1 byte, one 16-bit word per lane.
+/// Loads both values of Lanes <= 8 lanes: values of 1 byte, one 16-bit word per lane.
 template <int Lanes, class Value, class Offset>
 PELLUCID_ALWAYS_INLINE __m128i short_words(const Value* const* base, Offset offset) noexcept {
   static_assert(sizeof(Value) == 1);
@@ -112,7 +113,7 @@ struct Native<4> : LibraryOperations {
     return _mm_blendv_pd(b, a, m);
   }
 
-  /// Bits of the numbers: sign bits are flipped, taken and put.
+  /// Return the numbers with sign bits flipped, taken or put.
   PELLUCID_ALWAYS_INLINE static Float flip(Float a, Float b) noexcept { return _mm_xor_ps(a, b); }
   PELLUCID_ALWAYS_INLINE static Double flip(Double a, Double b) noexcept {
     return _mm_xor_pd(a, b);
@@ -166,8 +167,8 @@ struct Native<4> : LibraryOperations {
     return _mm_round_pd(x, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
   }
 
-  /// x 2^n for whole n, |n| <= 2^8 (float), 2^11 (double): two factors, so that neither over- nor
-  /// underflows before the result does, which is then rounded once.
+  /// Returns x 2^n for whole n, |n| <= 2^8 (float), 2^11 (double): by two factors, so that neither
+  /// over- nor underflows before the result does, which is then rounded once.
   PELLUCID_ALWAYS_INLINE static Float scale(Float x, Float n) noexcept {
     const __m128i whole = _mm_cvtps_epi32(n), half = _mm_srai_epi32(whole, 1);
     const __m128i rest = _mm_sub_epi32(whole, half), bias = _mm_set1_epi32(127);
@@ -195,7 +196,8 @@ struct Native<4> : LibraryOperations {
   PELLUCID_ALWAYS_INLINE static Float to_float(Double low, Double high) noexcept {
     return _mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high));
   }
-  /// 0 ... 2^32 - 1, rounded once: the halves are exact, and so is the shift of the upper one.
+  /// Converts 0 ... 2^32 - 1, rounded once: the halves are exact, and so is the shift of the upper
+  /// one.
   PELLUCID_ALWAYS_INLINE static Float unsigned_to_float(Int x) noexcept {
     const __m128 high = _mm_cvtepi32_ps(_mm_srli_epi32(x, 16));
     const __m128 low = _mm_cvtepi32_ps(_mm_and_si128(x, _mm_set1_epi32(0xffff)));
@@ -232,8 +234,8 @@ struct Native<4> : LibraryOperations {
   template <class T>
   static constexpr bool has_lookup = false;
 
-  /// Pairs of values of 4 or 8 bytes: 32-bit words of the first and of the second ones, doubles
-  /// already rounded to float.
+  /// Loads pairs of values of 4 or 8 bytes: 32-bit words of the first and of the second ones,
+  /// doubles already rounded to float.
   template <class Value, class Offset>
   PELLUCID_ALWAYS_INLINE static void pairs(const Value* const* base, Offset offset, Float& first,
                                            Float& second) noexcept {
@@ -245,18 +247,18 @@ struct Native<4> : LibraryOperations {
   }
   /// True if there is pairs_in_rows().
   static constexpr bool has_pairs_in_rows = false;
-  /// Pairs of values of 2 bytes: one word per lane, the first value in its lower half.
+  /// Loads pairs of values of 2 bytes: one word per lane, the first value in its lower half.
   template <class Value, class Offset>
   PELLUCID_ALWAYS_INLINE static Int words(const Value* const* base, Offset offset) noexcept {
     return four_words(base, offset);
   }
-  /// Pairs of bytes: the first in the lowest byte of the lane, the second above, the rest 0.
+  /// Loads pairs of bytes: the first in the lowest byte of the lane, the second above, the rest 0.
   template <class Value, class Offset>
   PELLUCID_ALWAYS_INLINE static Int bytes(const Value* const* base, Offset offset) noexcept {
     return _mm_cvtepu16_epi32(short_words<4>(base, offset));
   }
 
-  /// Four consecutive floats of each lane, from base + stride · index[lane], transposed.
+  /// Loads four consecutive floats of each lane, from base + stride · index[lane], transposed.
   PELLUCID_ALWAYS_INLINE static void four_fields(const float* base, std::ptrdiff_t stride,
                                                  const std::int32_t* index, Float* out) noexcept {
     __m128 r[4];
@@ -268,7 +270,7 @@ struct Native<4> : LibraryOperations {
     out[2] = _mm_movelh_ps(b, d);
     out[3] = _mm_movehl_ps(d, b);
   }
-  /// The other way round: four floats of each lane, in[0] to in[3], to base + stride · index[lane].
+  /// Stores four floats of each lane, in[0] to in[3], at base + stride · index[lane].
   PELLUCID_ALWAYS_INLINE static void store_four_fields(const Float* in, float* base,
                                                        std::ptrdiff_t stride,
                                                        const std::int32_t* index) noexcept {
@@ -280,7 +282,7 @@ struct Native<4> : LibraryOperations {
     _mm_storeu_ps(base + stride * index[3], _mm_movehl_ps(d, b));
   }
 
-  /// The four doubles at base + 4 · index[lane] of every lane.
+  /// Loads the four doubles at base + 4 · index[lane] of every lane.
   PELLUCID_ALWAYS_INLINE static void four_doubles(const double* base, const std::int32_t* index,
                                                   Double* low, Double* high) noexcept {
     Double* const half[2] = {low, high};

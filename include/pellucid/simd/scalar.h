@@ -74,11 +74,11 @@ PELLUCID_HD constexpr bool none(bool mask) noexcept {
 PELLUCID_HD constexpr int count(bool mask) noexcept {
   return mask ? 1 : 0;
 }
-/// One bit per lane, lane 0 the lowest.
+/// Returns one bit per lane, lane 0 the lowest.
 PELLUCID_HD constexpr unsigned bits(bool mask) noexcept {
   return mask ? 1u : 0u;
 }
-/// Only in lanes of the mask.
+/// Assigns the value in lanes of the mask only.
 template <class T>
 PELLUCID_HD constexpr void assign(bool mask, T& target, T value) noexcept {
   if (mask) target = value;
@@ -94,7 +94,7 @@ template <class T>
 PELLUCID_HD constexpr T gather(const T* base, int index) noexcept {
   return base[index];
 }
-/// gather() of a table that is small enough to be held in registers.
+/// Returns gather() of a table that is small enough to be held in registers.
 template <class T, std::size_t Entries>
 PELLUCID_HD constexpr T lookup(const T (&table)[Entries], int index) noexcept {
   return table[index];
@@ -103,7 +103,7 @@ PELLUCID_HD constexpr T lookup(const T (&table)[Entries], int index) noexcept {
 template <class T>
 inline constexpr bool looks_up_in_registers = false;
 
-/// out[k] = base[K index + k], k < K.
+/// Sets out[k] = base[K index + k], k < K.
 template <int K>
 PELLUCID_HD constexpr void load_records(const float* base, int index, float* out) noexcept {
   for (int k = 0; k < K; ++k) out[k] = base[K * static_cast<std::ptrdiff_t>(index) + k];
@@ -134,7 +134,7 @@ PELLUCID_FORWARD_UNARY(floor)
 PELLUCID_FORWARD_UNARY(abs)
 #undef PELLUCID_FORWARD_UNARY
 
-/// Fused: one rounding, also where the machine has no such instruction.
+/// Returns a b + c with one rounding, also where the machine has no such instruction.
 PELLUCID_HD inline float fma(float a, float b, float c) noexcept {
   return std::fma(a, b, c);
 }
@@ -142,8 +142,9 @@ PELLUCID_HD inline double fma(double a, double b, double c) noexcept {
   return std::fma(a, b, c);
 }
 
-/// a b + c, rounded once or twice, whichever is faster: for sums whose stated error holds for
-/// either. At width 1 twice: on x86-64 without FMA instructions a fused product is a library call.
+/// Returns a b + c, rounded once or twice, whichever is faster: for sums whose stated error holds
+/// for either. At width 1 twice: on x86-64 without FMA instructions a fused product is a library
+/// call.
 PELLUCID_HD constexpr float multiply_add(float a, float b, float c) noexcept {
   return a * b + c;
 }
@@ -155,7 +156,7 @@ PELLUCID_HD constexpr double multiply_add(double a, double b, double c) noexcept
 template <class T>
 inline constexpr bool fuses = false;
 
-/// A NaN in either argument gives b, like the machine instruction.
+/// Returns the smaller one; b where either argument is NaN, like the machine instruction.
 template <class T>
 PELLUCID_HD constexpr T min(T a, T b) noexcept {
   return select(a < b, a, b);
@@ -169,7 +170,7 @@ PELLUCID_HD constexpr T clamp(T x, T lo, T hi) noexcept {
   return min(max(x, lo), hi);
 }
 
-/// x with the sign of s; s = ±0 counts with its sign bit.
+/// Returns x with the sign of s; s = ±0 counts with its sign bit.
 PELLUCID_HD inline float copysign(float x, float s) noexcept {
   return std::copysign(x, s);
 }

@@ -22,7 +22,7 @@ struct BlockStep {
 /// other, such walks give the steps of the walk over the whole ray, each number to the bit.
 class BlockWalk {
  public:
-  /// The blocks are referred to and must outlive the walk. The ray is in grid coordinates,
+  /// Begins a walk. The blocks are referred to and must outlive it. The ray is in grid coordinates,
   /// range.begin finite.
   PELLUCID_HD BlockWalk(const BlockRecords& blocks, const Ray<double>& ray_grid,
                         Interval<double> range) noexcept
@@ -142,7 +142,7 @@ PELLUCID_HD void for_each_block(const BlockRecords& blocks, const Ray<double>& r
     if (!visit(step)) return;
   }
 }
-/// The same, but for blocks to skip, which come by the cube.
+/// Visits the blocks likewise, but those to skip by the cube.
 template <class Visit>
 PELLUCID_HD void for_each_block(const ClassifiedBlocks& blocks, const Ray<double>& ray_grid,
                                 Interval<double> range, Visit&& visit) noexcept {

@@ -53,7 +53,7 @@ class LineInBoxes {
   Vec3<double> inverse_;
 };
 
-/// visit(MeshHit) for every boundary face that the line goes through, in the tree's order.
+/// Calls visit(MeshHit) for every boundary face that the line goes through, in the tree's order.
 template <class Visit>
 PELLUCID_HD void for_each_boundary_hit(const Tetrahedra& mesh, const Ray<double>& ray,
                                        const RayFrame<double>& view, Visit&& visit) noexcept {

@@ -67,7 +67,7 @@ class BlockRecorder {
   static constexpr int side = block_width + 2;
   /// Length of a row in the copy: whole vectors of 16 bytes.
   static constexpr int row = sizeof(Number) == 2 ? 16 : sizeof(Number) == 4 ? 12 : side;
-  /// From one corner to the next along an axis.
+  /// Returns the distance in the copy from one corner to the next along an axis.
   PELLUCID_HD static constexpr int stride(int a) noexcept {
     return a == 0 ? 1 : a == 1 ? row : row * side;
   }
@@ -98,12 +98,12 @@ class BlockRecorder {
     return corner_ + j * stride(1) + k * stride(2);
   }
 
-  /// Told that the two do not overlap, the compiler makes vector instructions of it.
+  /// Copies a row. Told that the two do not overlap, the compiler makes vector instructions of it.
   PELLUCID_HD static void copy_row(Number* __restrict to, const Value* __restrict from) noexcept {
     for (int i = 0; i < block_width; ++i) to[i] = static_cast<Number>(from[i]);
     for (int i = block_width; i < side; ++i) to[i] = static_cast<Number>(from[i]);
   }
-  /// Behind the grid's last plane its corners are repeated.
+  /// Copies the corners of the block; behind the grid's last plane they are repeated.
   PELLUCID_HD void copy() noexcept {
     int x[side];
     for (int i = 0; i < side; ++i) x[i] = grid_.axis[0].value_index(first_[0] + i);
@@ -157,8 +157,8 @@ class BlockRecorder {
     return e;
   }
 
-  /// All cells are 1 wide, but for the halves at the ends, whose differences are 0 whatever they
-  /// are divided by.
+  /// Finds what there is along an axis of cells that are 1 wide, but for the halves at the ends,
+  /// whose differences are 0 whatever they are divided by.
   template <int a>
   PELLUCID_HD void find_uniform_along(Found& found) const noexcept {
     constexpr int b = (a + 1) % 3, c = (a + 2) % 3;
@@ -195,13 +195,13 @@ class BlockRecorder {
     }
   }
 
-  /// Infinite where so large that products of two would be.
+  /// Returns 1 / width of a cell; infinite where so large that products of two would be.
   PELLUCID_HD double inverse_width(int a, int n) const noexcept {
     const GridAxis<double>& axis = grid_.axis[a];
     const double inverse = 1 / (axis.plane(first_[a] + n + 1) - axis.plane(first_[a] + n));
     return inverse < 1e140 ? inverse : std::numeric_limits<double>::infinity();
   }
-  /// The derivative on an edge: 0 only where the data at its ends are equal.
+  /// Returns the derivative on an edge: 0 only where the data at its ends are equal.
   PELLUCID_HD static double derivative(Number difference, double inverse_width) noexcept {
     if (difference == 0) return 0;
     const double d = static_cast<double>(difference) * inverse_width;
@@ -328,10 +328,11 @@ class BlockRecorder {
   Number corner_[row * side * side + 2]{};
 };
 
-/// The planes of the grid that bound the blocks of an axis, into `planes`: block_count() + 1.
+/// Returns how many blocks an axis has.
 PELLUCID_HD inline int block_count(const GridAxis<double>& axis) noexcept {
   return (axis.cells() - 1) / block_width + 1;
 }
+/// Writes the planes of the grid that bound the blocks of an axis to `planes`: block_count() + 1.
 PELLUCID_HD inline void find_block_planes(const GridAxis<double>& axis, double* planes) noexcept {
   const int blocks = block_count(axis);
   for (int b = 0; b < blocks; ++b) planes[b] = axis.plane(b * block_width);
@@ -351,8 +352,8 @@ PELLUCID_HD inline double least_plane_distance(const GridAxis<double>& axis) noe
   return least;
 }
 
-/// The records of blocks first <= b < last into out[b]; `axis` as in BlockRecords. Any split of the
-/// blocks may run in parallel.
+/// Writes the records of blocks first <= b < last to out[b]; `axis` as in BlockRecords. Any split
+/// of the blocks may run in parallel.
 template <class Value>
 PELLUCID_HD void build_block_records(const StructuredGrid<Value, double>& grid,
                                      const GridAxis<double> (&axis)[3], const BlockCode& code,

@@ -15,8 +15,8 @@ struct CurvatureBounds {
   float twist[3];
 };
 
-/// At most how much the data's derivative by t varies, in all, along a stretch of a ray: inside of
-/// one block, or of several one behind the other whose bends are joined by their maximum.
+/// Returns a bound on how much the data's derivative by t varies, in all, along a stretch of a ray:
+/// inside of one block, or of several one behind the other whose bends are joined by their maximum.
 ///
 /// Inside of a cell the trilinear data have no second derivative along an axis, so that along the
 /// direction d it is 2 Σ d_a d_b twist_ab. Across a plane of axis a the derivative jumps by d_a

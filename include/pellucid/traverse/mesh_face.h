@@ -36,7 +36,7 @@ struct SeenFace {
   T carried[3];  ///< what else is wanted of the points
   mask_t<T> left = mask_t<T>(false);  ///< how the points turn around the ray, in their order
 
-  /// interpolation_error() with weights().
+  /// Returns interpolation_error() with weights().
   PELLUCID_HD T error(T blur) const noexcept {
     T across = T(0);
     for (const ProjectedPoint<T>& p : seen) across += abs(p.x) + abs(p.y);
@@ -80,8 +80,8 @@ PELLUCID_HD mask_t<T> turn_around_ray(SeenFace<T>& face) noexcept {
   return (left[0] == left[1]) & (left[1] == left[2]) & !one_place;
 }
 
-/// The face `code` (4 · tetrahedron + face): false where the ray does not go through. see(point):
-/// where the ray sees it.
+/// Finds the face `code` (4 · tetrahedron + face); returns false where the ray does not go through.
+/// see(point): where the ray sees it.
 template <class T, class See>
 PELLUCID_HD bool see_face(const Tetrahedra& mesh, std::int32_t code, See&& see,
                           SeenFace<T>& face) noexcept {

@@ -57,7 +57,7 @@ PELLUCID_HD inline MeshPlace place_on(const SeenFace<double>& face, const MeshFi
   return place;
 }
 
-/// |gradient| of a variable in a tetrahedron; infinite where it has no volume.
+/// Returns |gradient| of a variable in a tetrahedron; infinite where it has no volume.
 PELLUCID_HD inline double steepness(const Tetrahedra& mesh, const double* value,
                                     std::int32_t tetrahedron) noexcept {
   const Tetrahedron& t = mesh.tetrahedron[tetrahedron];
@@ -70,8 +70,8 @@ PELLUCID_HD inline double steepness(const Tetrahedra& mesh, const double* value,
   return volume > 0 ? length(sum) / volume : std::numeric_limits<double>::infinity();
 }
 
-/// A better bound for the place on an inner face that the ray sees edge-on. Weights tell little of
-/// where the ray meets it; but the place that they make, at t, has its value exactly, and is no
+/// Improves the bound for the place on an inner face that the ray sees edge-on. Weights tell little
+/// of where the ray meets it; but the place that they make, at t, has its value exactly, and is no
 /// farther from the ray than the points' weighted sum says and what is seen is off by: times how
 /// steep the data are there that is the error of the value at t, and t needs none of its own.
 PELLUCID_HD inline void improve(const Tetrahedra& mesh, const MeshFields& fields,
@@ -135,10 +135,10 @@ PELLUCID_HD inline bool is_beyond(const Tetrahedra& mesh, const MeshFields& fiel
 
 }  // namespace detail
 
-/// visit(MeshSpan), front to back and while it returns true, for the tetrahedra that a ray goes
-/// through at t >= 0. `hits`: where its line goes through the boundary, in ascending order; they
-/// are used up. A mesh that is not convex is left and entered again; each way through it begins at
-/// one of the hits and ends at another.
+/// Calls visit(MeshSpan), front to back and while it returns true, for the tetrahedra that a ray
+/// goes through at t >= 0. `hits`: where its line goes through the boundary, in ascending order;
+/// they are used up. A mesh that is not convex is left and entered again; each way through it
+/// begins at one of the hits and ends at another.
 ///
 /// Where rounding lets places be out of order, what is behind the farthest one counts, and a span
 /// without length says how far its ends may be off. Where more than rounding does, or where the way

@@ -19,7 +19,7 @@ class MeshWalk {
   using Index = index_t<T>;
   using Mask = mask_t<T>;
 
-  /// The mesh is referred to.
+  /// Makes a walk through the mesh, which must outlive it.
   PELLUCID_HD explicit MeshWalk(const Tetrahedra& mesh) noexcept : mesh_(mesh) {}
 
   /// Begins behind `face`, which the ray goes through, in the lanes of `begun`: code = 4 ·
@@ -47,7 +47,7 @@ class MeshWalk {
   PELLUCID_HD Index ahead() const noexcept { return code_; }
   /// Returns the face as the tetrahedron gone through last has it.
   PELLUCID_HD Index left_by() const noexcept { return left_by_; }
-  /// Which corner of the face before has given way to the new point: drop[i], corner i.
+  /// Returns which corner of the face before has given way to the new point: drop[i], corner i.
   const Mask* dropped() const noexcept { return drop_; }
 
   /// Goes through the tetrahedron ahead in the lanes of `on`, where there is one. load(point, seen,

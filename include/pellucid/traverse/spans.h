@@ -13,7 +13,8 @@ struct CubicSpan {
   CubicBernstein<T> data;
   double t_begin, t_end;  ///< world arc length, front to back
 
-  /// The difference is formed in double: a short stretch far from the eye keeps its length.
+  /// Returns the world length. The difference is formed in double: a short stretch far from the eye
+  /// keeps its length.
   PELLUCID_HD T length() const noexcept { return static_cast<T>(t_end - t_begin); }
 };
 

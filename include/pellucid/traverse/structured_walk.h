@@ -46,7 +46,7 @@ class StructuredWalk {
     Vec3<T> entry, exit;  ///< in [0,1]³ of the cell
   };
 
-  /// The axes are referred to and must outlive the walk. range.begin is finite.
+  /// Begins a walk. The axes are referred to and must outlive it. range.begin is finite.
   PELLUCID_HD StructuredWalk(const GridAxis<T> (&axis)[3], const Ray<T>& ray_grid,
                              Interval<T> range) noexcept
       : axis_(axis) {

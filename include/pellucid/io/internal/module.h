@@ -20,13 +20,14 @@ struct Module {
 /// Throws Error where it is in none of them.
 std::filesystem::path module_file(const Module& module);
 
-/// A function of the module, loaded by the first call and kept, never unloaded: what it read is
-/// freed by its code. Throws Error as module_file(), where it does not load, or where it lacks the
-/// function, whose name has its version.
+/// Returns a function of the module, loaded by the first call and kept, never unloaded: what it
+/// read is freed by its code. Throws Error as module_file(), where it does not load, or where it
+/// lacks the function, whose name has its version.
 void* module_function(const Module& module, const char* name);
 
-/// Held while a module is loaded; and by whoever forks a process that loads one: the loader's own
-/// lock, held by another thread at that moment, would be held there for ever.
+/// Returns the lock that is held while a module is loaded, and by whoever forks a process that
+/// loads one: the loader's own lock, held by another thread at that moment, would be held there for
+/// ever.
 std::mutex& loading_modules();
 
 }  // namespace pellucid

@@ -9,7 +9,7 @@
 
 namespace pellucid {
 
-/// Parse a file in memory, as fuzzers have it. `name` opens the messages. Throw Error.
+/// Read a file in memory, as fuzzers have it. `name` opens the messages. Throw Error.
 Volume parse_npy(const std::vector<std::byte>& bytes, const std::string& name,
                  const ReadOptions& options = {});
 Volume parse_npz(const std::vector<std::byte>& bytes, const std::string& name,

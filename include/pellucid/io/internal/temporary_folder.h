@@ -9,7 +9,8 @@ namespace pellucid {
 /// A folder for temporary files that nobody else can read, and that goes with this object.
 class TemporaryFolder {
  public:
-  /// `purpose`: what it is for, in the message. Throws Error if no folder can be made.
+  /// Makes a folder. `purpose`: what it is for, in the message. Throws Error if no folder can be
+  /// made.
   explicit TemporaryFolder(const std::string& purpose);
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;

@@ -40,7 +40,7 @@ class ValueNoise {
   /// all values where there is no function or it absorbs nowhere.
   TypicalNoise where_absorbs(const TransferFunction* function) const;
 
-  /// All counts, which parts of data of one range add (Volume::as_part_of()).
+  /// Returns all counts, which parts of data of one range add (Volume::as_part_of()).
   std::vector<double>& counts() noexcept { return counts_; }
 
  private:
@@ -48,10 +48,10 @@ class ValueNoise {
   std::vector<double> counts_;
 };
 
-/// flat_gradient() (scene/layer.h) of a layer of a grid, whose data may be a part of what `noise`
-/// is of; `side`: the mean side of the box of all of the data.
+/// Returns flat_gradient() (scene/layer.h) of a layer of a grid, whose data may be a part of what
+/// `noise` is of; `side`: the mean side of the box of all of the data.
 double flat_gradient(const Layer& layer, const ValueNoise& noise, double side);
-/// Its last term.
+/// Returns its last term.
 double least_flat_gradient(double range, double side) noexcept;
 
 }  // namespace pellucid
