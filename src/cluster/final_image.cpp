@@ -17,7 +17,7 @@ std::size_t count_of(ImageSize size) {
   return static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
 }
 
-/// The ends of all rays of a pixel are its own.
+/// Returns a backdrop with a pixel per ray; all rays of a pixel end where the pixel says.
 std::shared_ptr<const Image> backdrop_of_rays(const Image& backdrop, int samples) {
   if (samples == 1) return std::make_shared<const Image>(backdrop);
   Image rays;
@@ -66,7 +66,7 @@ struct Pixel {
 /// The pixels of a scene, of composited rays.
 class Pixels {
  public:
-  /// `depth`: of the rays; empty: not asked for.
+  /// Takes the rays of all pixels. `depth`: of the rays; empty: not asked for.
   Pixels(const Scene& scene, const std::vector<RayPixel>& rays, const std::vector<float>& depth)
       : scene_(scene),
         rays_(rays),

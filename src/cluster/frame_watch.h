@@ -11,13 +11,14 @@ namespace pellucid {
 /// Tells the ranks of a frame of each other: how far they are, and that all must stop.
 class FrameWatch {
  public:
-  /// `progress` may be empty. It is called with the fraction that all ranks have done, as far as is
-  /// known on rank 0, and with the own fraction on other ranks.
+  /// Watches a frame of these ranks. `progress` may be empty. It is called with the fraction that
+  /// all ranks have done, as far as is known on rank 0, and with the own fraction on other ranks.
   FrameWatch(Communicator& ranks, std::function<bool(double)> progress);
 
-  /// To be called by one thread at a time while this rank renders. Returns whether to go on.
+  /// Tells the others how far this rank is, and returns whether to go on. To be called by one
+  /// thread at a time while this rank renders.
   bool tell(double own_fraction);
-  /// To be called while this rank waits for the others.
+  /// Hears the others and asks whether to go on. To be called while this rank waits for them.
   void wait();
   /// Tells the other ranks to stop.
   void stop_others();

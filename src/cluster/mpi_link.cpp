@@ -26,7 +26,8 @@ void check(int code) {
   throw std::runtime_error(std::string(text, static_cast<std::size_t>(length)));
 }
 
-/// The parts of Open MPI that it loads look for its functions among those that all may see.
+/// Shows the functions of MPI to all libraries: the parts of Open MPI that it loads look for them
+/// there.
 void show_library() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&MPI_Comm_rank), &info) != 0) {
@@ -34,7 +35,7 @@ void show_library() {
   }
 }
 
-/// MPI's operator: to[i] = from[i] over to[i]; the lower ranks are in `from`.
+/// Composites as MPI's operators do: to[i] = from[i] over to[i]; the lower ranks are in `from`.
 void composite_over(void* from, void* to, int* count, MPI_Datatype* /*type*/) {
   const auto* const front = static_cast<const RayPixel*>(from);
   auto* const behind = static_cast<RayPixel*>(to);

@@ -17,7 +17,7 @@ namespace pellucid {
 /// fails.
 class MpiLink {
  public:
-  /// All ranks of the program, if the handle is null.
+  /// Links the ranks of a communicator; those of the whole program if the handle is null.
   explicit MpiLink(const int* fortran_handle);
   ~MpiLink();
   MpiLink(const MpiLink&) = delete;
@@ -28,8 +28,8 @@ class MpiLink {
   std::vector<std::string> gather_all(const std::string& own, const std::function<void()>& waiting);
   void reduce_all(std::span<double> values, Communicator::Reduction reduction);
   void broadcast(std::span<float> values);
-  /// `in_front`: each rank gets the composite of those in front of it; else rank 0 gets that of
-  /// all.
+  /// Composites the pixels of all ranks. `in_front`: each rank gets the composite of those in front
+  /// of it; else rank 0 gets that of all.
   void composite(std::span<RayPixel> pixels, int place, bool in_front);
   void abort(int status) noexcept { MPI_Abort(ranks_, status); }
   void send(int to, const RankSignal& signal);

@@ -17,7 +17,7 @@ GridAxis<double> axis_of(const Volume::Description& description, int axis) {
           description.centering == Centering::cell ? 1 : 0};
 }
 
-/// Position of the plane in front of a block.
+/// Returns the position of the plane in front of a block.
 double plane_of(const Volume::Description& description, int axis, int block) {
   const GridAxis<double> grid = axis_of(description, axis);
   return grid.plane(std::min(block * side, grid.cells()));

@@ -26,7 +26,7 @@ std::vector<SurveySlab> slabs_of(const Volume::Description& description, int ran
 /// Regions in which a uniform grid absorbs.
 class Survey {
  public:
-  /// `frame_from_grid`, `bounds`: of the weights, which have so many cells.
+  /// Prepares weights. `frame_from_grid`, `bounds`: of the weights, which have so many cells.
   Survey(const Volume::Description& description, const Affine<double>& frame_from_grid,
          const Box<double>& bounds, const std::array<int, 3>& cells);
 

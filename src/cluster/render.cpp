@@ -82,7 +82,7 @@ int most_bricks(const BrickTree& tree, const Scene& rays) {
   return most;
 }
 
-/// The counts of reports add up over the ranks; seconds are those of the slowest.
+/// Adds up the counts of the reports of all ranks; seconds are those of the slowest.
 void add_up(Communicator& ranks, RenderReport& report) {
   RuleCounts& spans = report.spans;
   std::uint64_t* const counts[] = {

@@ -47,7 +47,7 @@ bool suits_packets(const Volume& volume, double largest_extinction);
 /// Returns whether no ray takes so many steps of this world length that an int cannot count them.
 bool has_few_steps(const Volume& volume, double step);
 
-/// The grid's part of a job.
+/// Fills the grid's part of a job.
 void set_grid(const Volume& volume, PellucidPacketJob& job);
 
 /// Converts the result of a packet for a ray.
@@ -57,8 +57,8 @@ void read_result(const PellucidRayResult& from, RayResult& to);
 /// silhouette, where ScreenMask forbids interpolation.
 RayResult missing_ray();
 
-/// Parts of rays in the grid's coordinates instead of the world's; their parameter stays the world
-/// arc length.
+/// Returns parts of rays in the grid's coordinates instead of the world's; their parameter stays
+/// the world arc length.
 std::vector<RayPart> parts_in_grid(const Volume& volume, const std::vector<RayPart>& world);
 
 /// Rays of the parts that meet the grid's box, with their indices.

@@ -74,7 +74,8 @@ class RayTracer {
     ClassifiedBlocks blocks;
     double longest_step;  ///< voxels: how far apart rays may be at most
   };
-  /// None: nothing is known of what is between rays.
+  /// Returns what interpolation between rays has to know; none: nothing is known of what is between
+  /// them.
   virtual std::optional<InterpolationInfo> interpolation_info() const { return std::nullopt; }
 };
 

@@ -83,7 +83,7 @@ class CudaBackend : public DeviceBackend {
   }
 
  private:
-  /// The card is the thread's, and frames come from any thread.
+  /// Chooses the card, which CUDA does per thread; frames come from any thread.
   static void use_card() { check(cudaSetDevice(0), "card 0"); }
 
   void copy(void* to, const void* from, std::size_t bytes, cudaMemcpyKind kind) {

@@ -19,7 +19,8 @@
 namespace pellucid {
 namespace {
 
-/// The values are even in a body that fills a share of a box whose chords have this mean.
+/// Makes the function of values that are even in a body that fills a share of a box whose chords
+/// have this mean.
 TransferFunction make_default(const ClassedValues& of, double chord, double filled) {
   const std::vector<double>& v = of.values;
   const std::size_t n = v.size();
@@ -61,7 +62,7 @@ TransferFunction default_transfer_function(const MeshChannels& mesh) {
 
 namespace {
 
-/// `longest`: of a ray, in the world.
+/// Returns a grey ramp for a projection. `longest`: of a ray, in the world.
 TransferFunction grey_ramp(const VolumeStatistics& data, LayerProjection projection,
                            double longest) {
   double lower = data.minimum, upper = data.maximum;

@@ -13,7 +13,7 @@ namespace pellucid {
 
 namespace {
 
-/// NaN where the two are not the same and one is not finite.
+/// Returns |a - b|; NaN where the two are not the same and one is not finite.
 double absolute_difference(float a, float b) {
   if (a == b || (std::isnan(a) && std::isnan(b))) return 0;
   const double difference = std::abs(static_cast<double>(a) - static_cast<double>(b));

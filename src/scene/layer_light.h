@@ -11,7 +11,7 @@ namespace pellucid {
 /// Returns the layer's function of one variable, of a mask the one of labels without another; null
 /// if it is of several, or labels.
 const TransferFunction* table_of(const Layer& layer) noexcept;
-/// The part of check_layer() that is about light and surfaces; the data have passed theirs.
+/// Checks light and surfaces for check_layer(); the data have passed theirs.
 void check_light_of(const Layer& layer, const std::string& where);
 /// Returns the largest color component of isosurfaces and slices with colors of their own.
 double largest_surface_color(const Layer& layer) noexcept;

@@ -8,7 +8,7 @@
 
 namespace pellucid {
 
-/// Mean length of the chords of the volume's box: 4 · volume / surface (Cauchy).
+/// Returns the mean length of the chords of the volume's box: 4 · volume / surface (Cauchy).
 inline double mean_chord(const Volume& volume) {
   const Vec3<double> size = volume.grid_upper() - volume.grid_lower();
   const Mat3<double>& axes = volume.world_from_grid().matrix;

@@ -29,7 +29,7 @@ void require_finite(const Vec3<double>& v, const std::string& what) {
   }
 }
 
-/// v / |v| without overflow or underflow on the way; the zero vector stays zero.
+/// Returns v / |v| without overflow or underflow on the way; the zero vector stays zero.
 Vec3<double> unit(Vec3<double> v) {
   const double largest = max(std::abs(v.x), max(std::abs(v.y), std::abs(v.z)));
   if (largest == 0) return v;

@@ -21,8 +21,8 @@ struct LayerSetting;
 /// Data of a layer for a device, in the host's memory.
 class DeviceLayer {
  public:
-  /// The layer is in its place, cannot_follow() has nothing to say of it, and it must outlive the
-  /// object.
+  /// Prepares a layer for a device. The layer is in its place, cannot_follow() has nothing to say
+  /// of it, and it must outlive the object.
   DeviceLayer(const Layer& layer, const LayerSetting& setting, const ParallelFor& parallel);
   DeviceLayer(const DeviceLayer&) = delete;
   DeviceLayer& operator=(const DeviceLayer&) = delete;

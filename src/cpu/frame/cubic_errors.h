@@ -19,12 +19,12 @@ class CubicErrors {
   /// of two.
   CubicErrors(const ImageView& image, ImageSize size, int stride, int threads);
 
-  /// Between the lattice's pixel and the next one of its row; of its column.
+  /// Return the error between the lattice's pixel and the next one of its row; of its column.
   float across(int column, int row) const noexcept { return across_[index(column, row)]; }
   float down(int column, int row) const noexcept { return down_[index(column, row)]; }
 
  private:
-  /// `column`, `row`: of the image.
+  /// Returns where the lattice's pixel is in the lists. `column`, `row`: of the image.
   std::size_t index(int column, int row) const noexcept {
     return static_cast<std::size_t>(row >> log2_of_stride_) * columns_ +
            static_cast<std::size_t>(column >> log2_of_stride_);

@@ -14,7 +14,7 @@
 namespace pellucid {
 namespace {
 
-/// Rounding a pixel to binary32 costs at most half a unit in its last place.
+/// Returns what rounding a pixel to binary32 costs at most: half a unit in its last place.
 double storage_error(double value) {
   return std::max(value, 1.0) * 0x1p-24;
 }
@@ -39,7 +39,7 @@ double reach(const std::vector<const Layer*>& layers) {
   return longest;
 }
 
-/// Extinction that each layer may leave out all along a ray.
+/// Returns the extinction that each layer may leave out all along a ray.
 double negligible_extinction(const std::vector<const Layer*>& layers, const RayTolerance& wanted) {
   return ray_left_out_share * wanted.tolerance /
          (std::max(reach(layers), std::numeric_limits<double>::min()) *

@@ -23,8 +23,8 @@ struct PixelBox {
 
 /// Data that every pixel of the frame shares.
 struct Frame {
-  /// `scene` must outlive the frame. Set-ups of layers come from `kept`, and those that are missing
-  /// are made on so many threads.
+  /// Prepares a frame. `scene` must outlive it. Set-ups of layers come from `kept`, and those that
+  /// are missing are made on so many threads.
   Frame(const Scene& scene, const RenderOptions& options, int threads, LayerSetups& kept);
 
   const Scene& scene;

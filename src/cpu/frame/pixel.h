@@ -17,7 +17,7 @@ void store_pixel(const Frame& frame, const RayResult& result, std::size_t pixel,
 /// Adds the counts of a pixel's rays.
 void add_work(RenderReport& sum, const RayResult& result);
 
-/// One tile's part of the report, or the whole.
+/// Adds a part of a report: that of one tile, or the whole.
 void add(RenderReport& sum, const RenderReport& part);
 
 }  // namespace pellucid

@@ -42,7 +42,7 @@ struct Shares {
 constexpr Shares shares_of(int stride) noexcept {
   return stride == 1 ? Shares{1, 1} : stride == 2 ? Shares{0.55, 0.85} : Shares{0.3, 0.5};
 }
-/// The error that a pixel inherits leaves something for itself.
+// The error that a pixel inherits leaves something for itself.
 static_assert(shares_of(2).in_between < shares_of(1).in_between &&
               shares_of(4).in_between < shares_of(2).in_between);
 
@@ -119,7 +119,7 @@ double cells_by_length(const Volume& volume, Vec3<double> width) noexcept {
   return std::exp(0.5 * (log_of_scale + std::log(trace)) / power);
 }
 
-/// From pixel to pixel, at most.
+/// Returns the largest distance from pixel to pixel in the volume, in voxels.
 double voxels_between_pixels(const CameraFrame<double>& camera, const Volume& volume,
                              const BlockRecords& records, double farthest) {
   const double across = 2 * std::sqrt(dot(camera.right, camera.right)) / camera.width,

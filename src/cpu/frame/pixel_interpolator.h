@@ -34,12 +34,12 @@ namespace pellucid {
 /// before.
 class PixelInterpolator {
  public:
-  /// Null where all pixels are to be traced.
+  /// Makes the interpolator of a frame; null where all pixels are to be traced.
   static std::unique_ptr<PixelInterpolator> make(const Frame& frame, const ImageView& image);
 
   int stride() const noexcept { return stride_; }
-  /// To be called when the pixels of a level are done, not the last: finds out on a few pixels
-  /// whether the next one is worth it. Where it is not, all that is left is to be traced.
+  /// Finds out on a few pixels whether the next level is worth it. To be called when the pixels of
+  /// a level are done, not the last. Where it is not, all that is left is to be traced.
   void finish_level(int stride, int threads);
   bool goes_on() const noexcept { return goes_on_; }
   /// Returns the fraction of the tolerance that rays of this level may use, so that some remains

@@ -15,14 +15,15 @@ namespace pellucid {
 /// at a time calls; the others leave their tiles to it and never wait.
 class Progress {
  public:
-  /// All must outlive this. `tiles` are those of the frame.
+  /// Reports a frame. All must outlive the object. `tiles` are those of the frame.
   Progress(const RenderOptions& options, const ImageView& image, const std::vector<Tile>& tiles);
 
-  /// So many pixels more are final, of which no tile is to be told yet. Any thread.
+  /// Notes that so many pixels more are final, of which no tile is to be told yet. Any thread.
   void finish_pixels(std::size_t count);
-  /// All pixels of the tile are final, of which so many were not before. Any thread.
+  /// Notes that all pixels of the tile are final, of which so many were not before. Any thread.
   void finish_tile(const Tile& tile, std::size_t count);
-  /// The last word, when all threads are done, in case one was calling when the last tile was.
+  /// Tells what is left to tell, when all threads are done: one may have been calling when the last
+  /// tile was.
   void finish();
   bool cancelled() const noexcept { return cancelled_; }
 

@@ -16,7 +16,7 @@ class RaySpacing {
   /// Prepares for rays through the box of these blocks.
   explicit RaySpacing(const BlockRecords& records) noexcept;
 
-  /// Beside this ray (grid coordinates).
+  /// Returns the largest distance of a ray beside this one (grid coordinates).
   float operator()(const PellucidRay& ray) const noexcept;
 
  private:

@@ -22,7 +22,8 @@
 namespace pellucid {
 namespace {
 
-/// A part of a pixel is composited ray by ray, and a projection is no composite.
+/// Throws Error if the scene cannot be rendered in a region: a part of a pixel is composited ray by
+/// ray, and a projection is no composite.
 void check_region(const Scene& scene) {
   const bool projects = std::ranges::any_of(
       scene.layers, [](const Layer& layer) { return layer.visible && layer.projection; });

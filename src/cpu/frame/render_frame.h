@@ -23,7 +23,7 @@ Image make_image(ImageSize size, const FrameOutputs& outputs);
 /// size. All that it is given must outlive it.
 class FrameWork {
  public:
-  /// `threads` > 0. The options' outputs are those for which there is memory.
+  /// Prepares a frame. `threads` > 0. The options' outputs are those for which there is memory.
   FrameWork(const ImageView& image, const Scene& scene, const RenderOptions& options, int threads,
             LayerSetups& kept, DeviceCache& devices);
   ~FrameWork();

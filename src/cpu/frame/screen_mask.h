@@ -25,8 +25,8 @@ double farthest_depth(const CameraFrame<double>& camera, const Volume& volume,
 /// is a kink of the picture, or a step, as CubicErrors hold for.
 class ScreenMask {
  public:
-  /// `square`: pixels, a power of two. `box`: the corners of the only part of the volume that is
-  /// shown, a box as well; null: all of it is.
+  /// Marks the squares. `square`: pixels, a power of two. `box`: the corners of the only part of
+  /// the volume that is shown, a box as well; null: all of it is.
   ScreenMask(const CameraFrame<double>& camera, const Volume& volume,
              const ClassifiedBlocks& blocks, int square,
              const std::array<Vec3<double>, 8>* box = nullptr);

@@ -17,7 +17,7 @@ inline constexpr int tile_edge = 16;
 /// share data.
 std::vector<Tile> make_tiles(ImageSize size, int preview);
 
-/// Squares of the pixels whose columns and rows are multiples of `stride`.
+/// Returns the tiles of the pixels whose columns and rows are multiples of `stride`.
 std::vector<Tile> make_lattice(ImageSize size, int stride);
 
 inline std::size_t pixel_count(const Tile& tile) {

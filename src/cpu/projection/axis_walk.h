@@ -36,7 +36,7 @@ class WalkPlanes {
       per_length_[a] = axis[a].plane_position == nullptr ? 1 / width : 0;
     }
   }
-  /// The same for blocks of `width` cells, whose planes are nearly uniform.
+  /// Takes the planes of blocks of `width` cells instead, whose planes are nearly uniform.
   WalkPlanes(const GridAxis<double> (&axis)[3], double width) : WalkPlanes(axis) {
     for (int a = 0; a < 3; ++a) per_length_[a] = 1 / width;
   }

@@ -396,9 +396,9 @@ class GridProjector : public LayerProjector {
     return cells.gatherer.best();
   }
 
-  /// The same for blocks of cells of width 1 whose values lie side by side, without branches from
-  /// cell to cell. Positions of planes are sums of steps, off by 16 u, and a rest of the block that
-  /// is shorter than GridRay::rest is left out: its data are continuous with those before.
+  /// Visits a block of cells of width 1 likewise, whose values lie side by side, without branches
+  /// from cell to cell. Positions of planes are sums of steps, off by 16 u, and a rest of the block
+  /// that is shorter than GridRay::rest is left out: its data are continuous with those before.
   template <bool Largest>
   void visit_regular_block(const GridRay& ray, const CrossedBlock& block, const int (&place)[3],
                            double bound, Cells& cells) const {

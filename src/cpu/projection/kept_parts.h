@@ -12,7 +12,8 @@ namespace pellucid {
 /// changes at once where a part comes or goes.
 class KeptParts {
  public:
-  /// `range`: of the ray inside of the data. `ray` has a direction of length 1.
+  /// Cuts a ray by clips. `range`: of the ray inside of the data. `ray` has a direction of length
+  /// 1.
   KeptParts(Interval<double> range, const std::vector<Clip>& clips, const Ray<double>& ray)
       : intervals_(range, clips, ray) {
     position_error_ = intervals_.error_in(range);
@@ -27,8 +28,9 @@ class KeptParts {
   bool is_doubtful() const { return is_doubtful_; }
 
  private:
-  /// A part comes or goes by rounding only where two positions are as near to each other as their
-  /// errors. That does not matter beside a part that is longer: the data are continuous.
+  /// Finds the parts that may not be there. A part comes or goes by rounding only where two
+  /// positions are as near to each other as their errors. That does not matter beside a part that
+  /// is longer: the data are continuous.
   void find_doubts(Interval<double> range) {
     using Uncertain = ClipIntervals::Uncertain;
     std::vector<Uncertain> ends = intervals_.uncertain;

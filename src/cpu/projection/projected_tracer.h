@@ -13,8 +13,9 @@ namespace pellucid {
 /// Puts projected layers over what another tracer gathers, later layers over earlier ones.
 class ProjectedTracer : public RayTracer {
  public:
-  /// `layers`: the projected ones, in their places. `others`: of all other layers; null if there
-  /// are none. `clips`: of the scene. `largest_color`: of all layers and of the background.
+  /// Takes all layers of a scene. `layers`: the projected ones, in their places. `others`: of all
+  /// other layers; null if there are none. `clips`: of the scene. `largest_color`: of all layers
+  /// and of the background.
   ProjectedTracer(std::vector<Layer> layers, std::unique_ptr<const RayTracer> others,
                   const std::vector<Clip>& clips, double largest_color,
                   const ParallelFor& parallel);

@@ -24,7 +24,7 @@ struct ShownValue {
 /// opacity.
 class ValueColors {
  public:
-  /// The function must outlive the object.
+  /// Shows values by a function, which must outlive the object.
   explicit ValueColors(const TransferFunction& function);
 
   /// Returns the color of a value. Its error is the largest change of the color between the bounds

@@ -17,15 +17,16 @@ namespace pellucid {
 /// instruction set.
 class MultivariatePacketSampler {
  public:
-  /// Null where rays have to go one by one: no such instructions, a rectilinear grid, a single
-  /// layer of values, steps too many for an int, numbers whose squares binary32 has not, or
-  /// primitives so narrow that binary32 does not place the data in them. All that is given is
-  /// referred to. `step` in world length; `stop`: the transparency at which a ray ends.
+  /// Makes a sampler; null where rays have to go one by one: no such instructions, a rectilinear
+  /// grid, a single layer of values, steps too many for an int, numbers whose squares binary32 has
+  /// not, or primitives so narrow that binary32 does not place the data in them. All that is given
+  /// is referred to. `step` in world length; `stop`: the transparency at which a ray ends.
   static std::unique_ptr<const MultivariatePacketSampler> make(
       const Channels& channels, const MultivariateTransferFunction& transfer_function, double step,
       double stop, std::optional<InstructionSet> instruction_set, const ParallelFor& parallel);
 
-  /// Rays in grid coordinates, their parameter the world arc length. Without half_opacity_depth.
+  /// Samples rays in grid coordinates, their parameter the world arc length. Without
+  /// half_opacity_depth.
   std::vector<RayResult> trace(const std::vector<RayPart>& in_grid) const;
 
  private:

@@ -19,17 +19,18 @@ namespace pellucid {
 /// Samples rays at a fixed step in packets, in the machine's best instruction set.
 class PacketSamplerTracer {
  public:
-  /// Null where rays have to go one by one: no such instructions, a rectilinear grid, a single
-  /// layer of values, NaN among them, steps too many for an int, or numbers whose squares binary32
-  /// has not. All that is given is referred to. `preintegrated`: for this step, null
-  /// for the midpoint rule; `light`: null where there is none. `step` in world length; `stop`: the
-  /// transparency at which a ray ends.
+  /// Makes a sampler; null where rays have to go one by one: no such instructions, a rectilinear
+  /// grid, a single layer of values, NaN among them, steps too many for an int, or numbers whose
+  /// squares binary32 has not. All that is given is referred to. `preintegrated`: for this step,
+  /// null for the midpoint rule; `light`: null where there is none. `step` in world length; `stop`:
+  /// the transparency at which a ray ends.
   static std::unique_ptr<const PacketSamplerTracer> make(
       const Volume& volume, const BlockClasses& classes, const PiecewiseLinear<float>& transfer,
       const PreintegratedTable* preintegrated, const PacketLight* light, double step, double stop,
       std::optional<InstructionSet> instruction_set);
 
-  /// Rays in grid coordinates, their parameter the world arc length. Without half_opacity_depth.
+  /// Samples rays in grid coordinates, their parameter the world arc length. Without
+  /// half_opacity_depth.
   std::vector<RayResult> trace(const std::vector<RayPart>& in_grid) const;
 
  private:

@@ -27,7 +27,7 @@ Integrals integrate(const PiecewiseLinear<double>& transfer, int interval, doubl
                          (m.extinction + 2 * n.extinction) * n.color)};
 }
 
-/// From the first node to each.
+/// Returns the integrals from the first node to each.
 std::vector<Integrals> integrate_to_nodes(const PiecewiseLinear<double>& transfer,
                                           const std::vector<double>& node) {
   std::vector<Integrals> sums(node.size());

@@ -14,8 +14,9 @@ class PreintegratedStorage {
  public:
   static constexpr int nodes = 512;
 
-  /// For steps of this length through data from `lower` to `upper`. Each entry has the depth of its
-  /// step exactly; the color is a mean over parts of it, that are thin or between two nodes.
+  /// Makes the table for steps of this length through data from `lower` to `upper`. Each entry has
+  /// the depth of its step exactly; the color is a mean over parts of it, that are thin or between
+  /// two nodes.
   PreintegratedStorage(const PiecewiseLinear<double>& transfer, double lower, double upper,
                        double step, const ParallelFor& parallel);
   PreintegratedStorage(const PreintegratedStorage&) = delete;

@@ -24,7 +24,8 @@ class PsiTableStorage {
   PsiTable view_;
 };
 
-/// One for the whole program, made when it is first asked for: it knows nothing of the scene.
+/// Returns the one table of the whole program, made when it is first asked for: it knows nothing of
+/// the scene.
 const PsiTable& psi_table();
 
 }  // namespace pellucid

@@ -19,8 +19,8 @@ Gaussian<float> rounded_to_binary32(const Gaussian<double>& g);
 /// Owns what a SampledMultivariate refers to. Not copied, for the view refers to it.
 class SampledMultivariateStorage {
  public:
-  /// A primitive does not matter where it stays below its equal share of `negligible` (extinction,
-  /// > 0).
+  /// Prepares the function. A primitive does not matter where it stays below its equal share of
+  /// `negligible` (extinction, > 0).
   SampledMultivariateStorage(const MultivariateTransferFunction& transfer_function,
                              double negligible);
   SampledMultivariateStorage(const SampledMultivariateStorage&) = delete;

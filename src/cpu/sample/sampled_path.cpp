@@ -413,7 +413,8 @@ void SampledPath::add_data(std::size_t layer, int number, const double* front, c
   sum.add(of.depth, of.color);
 }
 
-/// Within the segment that passes the half, the rules know no more than a constant extinction.
+/// Returns the depth of half of the opacity. Within the segment that passes the half, the rules
+/// know no more than a constant extinction.
 double SampledPath::half_opacity_depth(double opacity) const {
   const double target = -std::log1p(-0.5 * opacity);
   double before = 0;

@@ -21,7 +21,7 @@ namespace pellucid {
 /// Out: what a ray gathers, of unknown error. Used by one thread.
 class SampledPath {
  public:
-  /// All must outlive the object.
+  /// Samples layers in light. All must outlive the object.
   SampledPath(const std::vector<ClippedLayer>& layers,
               const std::vector<LightSource<double>>& lights, const SamplingPlan& plan,
               double largest_color);
@@ -29,7 +29,7 @@ class SampledPath {
   SampledPath& operator=(const SampledPath&) = delete;
   ~SampledPath();
 
-  /// After a request to stop the result does not matter.
+  /// Samples a part of a ray. After a request to stop the result does not matter.
   RayResult sample(const RayPart& part, const std::stop_token& stop);
 
  private:

@@ -11,8 +11,8 @@ namespace {
 
 constexpr int fewest_bins = 1024, max_bins = 8192;
 
-/// So many bins, that control points at equal distances, as most of a tabulated function are, lie
-/// between them.
+/// Returns how many bins there are: so many that control points at equal distances, as most of a
+/// tabulated function are, lie between them.
 int count_bins(const PiecewiseLinear<float>& table, double range) {
   std::vector<double> gap;
   for (int i = 1; i < table.count; ++i) {
@@ -27,7 +27,7 @@ int count_bins(const PiecewiseLinear<float>& table, double range) {
   return static_cast<int>(gaps * std::ceil(fewest_bins / gaps));
 }
 
-/// Interval i of the table.
+/// Returns interval i of the table.
 std::array<float, SamplerTransfer::line_fields> line_of(const PiecewiseLinear<float>& table,
                                                         int i) {
   const Material<float>&a = table.lower_material(i), &b = table.upper_material(i);

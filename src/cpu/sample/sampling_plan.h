@@ -13,8 +13,8 @@ namespace pellucid {
 /// Plan by which a method for comparison samples the layers of a scene; shared by threads.
 class SamplingPlan {
  public:
-  /// `layers` must outlive the object; of a scene that check_method() accepts. `integration`: its
-  /// method is not `exact`. `largest_color`: of all that a ray may meet.
+  /// Plans for layers, which must outlive the object; of a scene that check_method() accepts.
+  /// `integration`: its method is not `exact`. `largest_color`: of all that a ray may meet.
   SamplingPlan(const std::vector<ClippedLayer>& layers, const Integration& integration,
                double largest_color, bool depth);
 

@@ -13,7 +13,7 @@ namespace pellucid {
 /// Points in a grid: their places, and the blocks in which nothing absorbs.
 class GridPoints : public LayerPoints {
  public:
-  /// All must outlive the object. `classes`: null: no block is skipped.
+  /// Takes points of a grid. All must outlive the object. `classes`: null: no block is skipped.
   GridPoints(const Volume& volume, const GridAxis<double> (&axis)[3], const BlockRecords& records,
              const BlockClass* classes)
       : volume_(volume), axis_(axis), records_(records), classes_(classes) {}

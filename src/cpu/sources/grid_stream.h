@@ -12,7 +12,7 @@
 
 namespace pellucid {
 
-/// The rounding of the positions at which a ray meets a plane of a grid, world length.
+/// Returns the rounding of the positions at which a ray meets a plane of a grid, world length.
 inline double grid_position_error(double t) {
   return 8 * rounding_unit<double> * t;
 }
@@ -20,8 +20,9 @@ inline double grid_position_error(double t) {
 /// Walks through the blocks of a grid, and through the cells of those that are not skipped.
 class GridStream : public LayerStream {
  public:
-  /// All must outlive the stream. `axis`: of the cells to walk through, in the grid's coordinates.
-  /// Skipped blocks are visited where a slice is; `wholly`: from end to end.
+  /// Walks through a grid. All must outlive the stream. `axis`: of the cells to walk through, in
+  /// the grid's coordinates. Skipped blocks are visited where a slice is; `wholly`: from end to
+  /// end.
   GridStream(const Volume& volume, const GridAxis<double> (&axis)[3], const BlockRecords& records,
              const BlockClass* classes, const std::vector<Slice>& slices, bool wholly)
       : volume_(volume),

@@ -104,7 +104,8 @@ class LabelStream : public GridStream {
     return false;
   }
 
-  /// The extinction of what the ray shows of a cell, and may show of another one in its place.
+  /// Returns the extinction of what the ray shows of a cell, and may show of another one in its
+  /// place.
   double doubt_in(const StructuredWalk<double>::Step& step) const {
     double doubt = 0;
     sides_.for_each_other_cell(source_.axes().axis(), step, [&](const int(&cell)[3]) {

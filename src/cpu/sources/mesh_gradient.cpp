@@ -7,8 +7,8 @@
 namespace pellucid {
 namespace {
 
-/// The gradient of the linear function with these values at the corners of a tetrahedron; `volume`
-/// becomes six times its volume, and 0 where it has none.
+/// Returns the gradient of the linear function with these values at the corners of a tetrahedron;
+/// `volume` becomes six times its volume, and 0 where it has none.
 Vec3<double> gradient_of(const Vec3<double> (&point)[4], const double (&value)[4], double& volume) {
   const Vec3<double> a = point[1] - point[0], b = point[2] - point[0], c = point[3] - point[0];
   const double determinant = dot(a, cross(b, c));

@@ -17,7 +17,7 @@ namespace pellucid {
 /// between those of the points, which are kept.
 class MeshGradient {
  public:
-  /// Mesh and field must outlive the object. `points`: how many the mesh has.
+  /// Finds the gradients. Mesh and field must outlive the object. `points`: how many the mesh has.
   MeshGradient(const Tetrahedra& mesh, const MeshField& field, std::size_t points,
                GradientKind kind);
 

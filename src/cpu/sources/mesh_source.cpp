@@ -35,7 +35,7 @@ class MeshSource : public VariablesSource {
 
   const Tetrahedra& mesh() const { return mesh_; }
   const MeshFields& fields() const { return fields_.view(); }
-  /// Null where nothing needs them.
+  /// Return the gradients for light and for gradient opacity; null where nothing needs them.
   const MeshGradient* gradient() const { return gradient_ ? &*gradient_ : nullptr; }
   const MeshGradient* magnitude() const { return magnitude_ ? &*magnitude_ : nullptr; }
 

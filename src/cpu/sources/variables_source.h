@@ -26,7 +26,7 @@ class VariablesSource : public LayerSource {
   }
 
  protected:
-  /// `function`: that of the task's layer, which outlives the source.
+  /// Takes `function`, that of the task's layer, which outlives the source.
   VariablesSource(const LayerTask& task, const AnyTransferFunction& function)
       : LayerSource(task.layer), function_(function) {
     if (const ChannelTransferFunction* const factor = look().value_factor()) {

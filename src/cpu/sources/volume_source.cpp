@@ -51,7 +51,7 @@ bool fits_walks(const GridAxis<double> (&axis)[3]) {
 /// The gradients of a grid that a layer's light and gradient opacity need.
 class GridGradients {
  public:
-  /// `volume_of(channel)` returns a volume.
+  /// Makes the gradients that the layer needs. `volume_of(channel)` returns a volume.
   template <class VolumeOf>
   GridGradients(const LayerAppearance& look, const VolumeOf& volume_of) {
     if (const auto& shading = look.layer().shading) {
@@ -61,7 +61,7 @@ class GridGradients {
       magnitude_.emplace(volume_of(factors->channel()), GradientKind::smooth);
     }
   }
-  /// `axis`: that of the walk.
+  /// Fills in gradient, its error and magnitude of a stretch. `axis`: that of the walk.
   void fill(const StructuredWalk<double>::Step& step, const GridAxis<double> (&axis)[3],
             const PlaneAmbiguity& planes, LayerStretch& stretch) const {
     if (gradient_) {

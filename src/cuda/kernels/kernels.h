@@ -35,13 +35,13 @@ struct AtomicMax {
 /// The sums of a block, in its shared memory.
 class BlockSums {
  public:
-  /// All threads of the block call it.
+  /// Sets the sums to zero. All threads of the block call it.
   __device__ explicit BlockSums(std::uint64_t* shared) : shared_(shared) {
     for (unsigned i = threadIdx.x; i < numbers; i += block_threads) shared_[i] = 0;
     __syncthreads();
   }
   __device__ DeviceCounts& sums() const { return *reinterpret_cast<DeviceCounts*>(shared_); }
-  /// All threads of the block call it, when they are done.
+  /// Adds the sums of the block to the total. All its threads call it, when they are done.
   __device__ void add_to(DeviceCounts& total) const {
     __syncthreads();
     if (threadIdx.x == 0) add_sums(sums(), total, AtomicAdd{}, AtomicMax{});
@@ -90,7 +90,7 @@ __global__ void __launch_bounds__(block_threads)
   sums.add_to(*task.counts);
 }
 
-/// A thread for each pixel of the lattice.
+/// Launches a thread for each pixel of the lattice.
 template <DeviceLook Look, bool SingleOnly>
 void launch_lattice(const DeviceScene& scene, const DeviceTask& task, cudaStream_t stream) {
   const std::int64_t blocks = patches_along(task.pixels.columns, patch_columns) *

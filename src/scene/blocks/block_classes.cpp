@@ -111,7 +111,7 @@ struct SampledCounts {
   }
 };
 
-/// `sampled`: as find_smooth_blocks() wants it.
+/// Returns the class of a block. `sampled`: as find_smooth_blocks() wants it.
 BlockClass classify(const BlockRecord& record, const CodeTable& codes,
                     const BlockRoughness& roughness, SampledBlock& sampled,
                     SampledCounts& counts) noexcept {

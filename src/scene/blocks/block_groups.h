@@ -22,7 +22,7 @@ class BlockGroups {
 
   class Group {
    public:
-    /// visit(block) of its blocks.
+    /// Calls visit(block) for its blocks.
     template <class Visit>
     void each(const Visit& visit) const {
       for (int k = first_[2]; k < end_[2]; ++k) {
@@ -38,7 +38,7 @@ class BlockGroups {
     std::array<int, 3> first_, end_;
   };
 
-  /// visit(group) of the groups of a slab.
+  /// Calls visit(group) for the groups of a slab.
   template <class Visit>
   void each(int slab, const Visit& visit) const {
     Group group;

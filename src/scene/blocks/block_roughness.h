@@ -27,7 +27,7 @@ class BlockRoughness {
     double steps;
   };
 
-  /// lower < upper, with no jump between or at them.
+  /// Returns the roughness of a range of data, lower < upper, with no jump between or at them.
   Range operator()(int lower, int upper) const noexcept;
 
  private:

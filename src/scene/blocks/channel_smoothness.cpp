@@ -30,9 +30,9 @@ class ChannelMovement {
  public:
   explicit ChannelMovement(const BlockRecords& records) : records_(records) {}
 
-  /// About the length of the gradient, seldom less. From corner to corner of a box of w cells along
-  /// each axis the data change by no more than their range: by Σ |slope| w in the mean, from which
-  /// slopes differ by half of what they vary by, where they vary evenly.
+  /// Returns about the length of the gradient, seldom less. From corner to corner of a box of w
+  /// cells along each axis the data change by no more than their range: by Σ |slope| w in the mean,
+  /// from which slopes differ by half of what they vary by, where they vary evenly.
   double slope(int block) const noexcept {
     const BlockRange range = records_.range(block);
     const std::array<int, 3> at = place(block);

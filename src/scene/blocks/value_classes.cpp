@@ -9,10 +9,10 @@
 namespace pellucid {
 namespace {
 
-/// Otsu 1979 with three classes: the sum of squared distances to the classes' means is smallest.
-/// (Two splits into two, one after the other, would first tell bone from the rest and never find
-/// air.) A class begins at a new value. The thresholds tried are spread evenly over the range and
-/// over the ranks, 256 in all. With two values only, the bright class is empty.
+/// Splits values into three classes after Otsu 1979: the sum of squared distances to the classes'
+/// means is smallest. (Two splits into two, one after the other, would first tell bone from the
+/// rest and never find air.) A class begins at a new value. The thresholds tried are spread evenly
+/// over the range and over the ranks, 256 in all. With two values only, the bright class is empty.
 Classes otsu_classes(const std::vector<double>& v) {
   const std::size_t n = v.size();
   const double range = v.back() - v.front();

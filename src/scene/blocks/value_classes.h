@@ -21,7 +21,7 @@ struct Classes {
 /// Values of value_sample(), and their classes where there are two different ones.
 struct ClassedValues {
   explicit ClassedValues(std::vector<double> of);
-  /// Between the background and the rest.
+  /// Returns a value between the background and the rest.
   double threshold() const {
     return values[classes.foreground - 1] / 2 + values[classes.foreground] / 2;
   }

@@ -24,7 +24,7 @@ struct VolumeScan {
   bool large = false;  ///< a finite value is beyond largest_value
 };
 
-/// Value by value, for volumes that are refused: which one is to blame.
+/// Scans value by value, for volumes that are refused: which one is to blame.
 template <class Value>
 VolumeScan scan_each(std::span<const Value> values) {
   VolumeScan s;
@@ -45,7 +45,7 @@ VolumeScan scan_each(std::span<const Value> values) {
   return s;
 }
 
-/// One pass, several values at a time.
+/// Scans in one pass, several values at a time.
 template <class Value>
 VolumeScan scan(std::span<const Value> values) {
   // Independent lanes, which the compiler turns into vectors.

@@ -9,7 +9,7 @@
 
 namespace pellucid {
 
-/// Mean edges of the cells between a volume's values, in the world.
+/// Returns the mean edges of the cells between a volume's values, in the world.
 inline std::array<double, 3> voxel_edges(const Volume& volume) noexcept {
   const std::array<Vec3<double>, 8> corners = volume.world_corners();
   std::array<double, 3> edges{};

@@ -85,7 +85,7 @@ class GaussianCheck {
   int channels_;
 };
 
-/// Over all channels: those that the primitive ignores have columns of zeros.
+/// Returns the primitive over all channels: those that it ignores have columns of zeros.
 Gaussian<double> spread(const GaussianPrimitive& primitive, int channels) {
   Gaussian<double> g;
   g.channels = channels;
@@ -131,7 +131,7 @@ std::optional<double> largest_mean_color(const std::vector<ChannelTransferFuncti
   return std::max({emission.r, emission.g, emission.b}) / extinction * beyond_rounding;
 }
 
-/// L of Σ = L L^T, rows; fails where Σ is not positive definite.
+/// Returns L of Σ = L L^T, rows; fails where Σ is not positive definite.
 Matrix cholesky(const Matrix& a) {
   const std::size_t n = a.size();
   Matrix l(n, std::vector<double>(n, 0.0));

@@ -13,7 +13,8 @@ namespace pellucid {
 /// -ln(1 - α) where what counts as opaque begins.
 inline constexpr double largest_depth = 100 * std::numbers::ln2;
 
-/// -ln(1 - α), of opacity and transparency 1 - α: what is small of the two has all of its digits.
+/// Returns -ln(1 - α), of opacity and transparency 1 - α: what is small of the two has all of its
+/// digits.
 inline double depth_of(double opacity, double transparency) {
   return opacity < 0.5 ? -std::log1p(-opacity) : -std::log(transparency);
 }
@@ -71,7 +72,7 @@ class OpacityStretch {
   }
 
  private:
-  /// From the nearer end: what vanishes there keeps its digits.
+  /// Mixes from the nearer end: what vanishes there keeps its digits.
   double mix(double v, double at_a, double at_b) const {
     const double from_a = v - a_.value, from_b = b_.value - v;
     return from_a <= from_b ? at_a + from_a / width_ * (at_b - at_a)
@@ -83,8 +84,8 @@ class OpacityStretch {
   double width_;
 };
 
-/// By how much, relative to the depth, a chord of it over the opacities between the depths u <= w
-/// exceeds it at most: a bound, attained for u = 0. With Δ = w - u
+/// Returns by how much, relative to the depth, a chord of it over the opacities between the depths
+/// u <= w exceeds it at most: a bound, attained for u = 0. With Δ = w - u
 ///
 ///   (√w - √u)² κ(Δ),  κ(Δ) = 1/(1 - e^-Δ) - 1/Δ, in [1/2, 1).
 ///

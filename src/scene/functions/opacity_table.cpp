@@ -98,7 +98,7 @@ class Refinement {
     add_chord(stretch, begin, last);
   }
 
-  /// One chord, or more where rounding of the values made it too long.
+  /// Adds one chord, or more where rounding of the values made it too long.
   void add_chord(const OpacityStretch& stretch, double begin, double end) {
     const double u = stretch.depth(begin), w = stretch.depth(end);
     const double excess = chord_excess(std::min(u, w), std::max(u, w));

@@ -31,7 +31,7 @@ class PointCheck {
                     from + " to " + pellucid::number(upper));
   }
 
-  /// Value, color and order of points[index].
+  /// Checks value, color and order of points[index].
   template <class Point>
   void place(const std::vector<Point>& points, std::size_t index) const {
     const Point& p = points[index];

@@ -24,7 +24,8 @@ struct ColumnDepth {
 /// most 256 points each.
 class Columns {
  public:
-  /// The axes are those of the channels `which`, whose bins have fewer than 2^31 combinations.
+  /// Makes the columns. The axes are those of the channels `which`, whose bins have fewer than 2^31
+  /// combinations.
   Columns(const Channels& channels, const std::vector<int>& which,
           const std::vector<HistogramAxis>& axes, int most_lines, const ParallelFor& parallel = {});
 
@@ -48,7 +49,8 @@ class Columns {
 
     /// Returns the offsets of points along a line (0) or of lines (1).
     std::vector<std::size_t> places(std::size_t along) const;
-    /// Points of a line follow each other, or lines of a point, as they do in the data.
+    /// Returns where the bin of a point is. Points of a line follow each other, or lines of a
+    /// point, as they do in the data.
     std::size_t index(int point, int line) const;
   };
 

@@ -69,7 +69,7 @@ bool is_image(const std::string& name, FolderKind folder) {
                                                         ".ome.zarr", ".zarr", ".companion.ome"});
 }
 
-/// Sorted values between two.
+/// Returns the share of sorted values that lie between two.
 double share_between(const std::vector<double>& v, double lower, double upper) {
   const auto begin = std::ranges::lower_bound(v, lower), end = std::ranges::upper_bound(v, upper);
   return static_cast<double>(end - begin) / static_cast<double>(v.size());

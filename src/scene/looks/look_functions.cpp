@@ -56,7 +56,7 @@ class Levels {
  public:
   explicit Levels(const LookedAt& data) : data_(data) {}
 
-  /// The least value that at most this share of all values exceeds.
+  /// Adds the least value that at most this share of all values exceeds.
   void add_exceeded_by(double share) {
     const std::vector<double>& v = data_.values.values;
     const auto n = static_cast<double>(v.size());
@@ -93,7 +93,7 @@ double opacity_of(std::size_t i, std::size_t count) {
   return std::round(100 * (0.22 + 0.7 * std::pow(in, 1.3))) / 100;
 }
 
-/// Blue below 0, red above, fainter toward 0.
+/// Returns surfaces that are blue below 0 and red above, fainter toward 0.
 std::vector<Isosurface> surfaces_of_both_signs(const LookedAt& data) {
   const std::vector<double>& v = data.values.values;
   const double largest = std::max(-v.front(), v.back());

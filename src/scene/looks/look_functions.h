@@ -19,7 +19,8 @@ struct LookedAt {
 bool is_around_zero(const ClassedValues& of);
 bool is_mostly_near_zero(const ClassedValues& of);
 
-/// Bone in Hounsfield units, or skin, in light. `air`: the value of air, -1000 in those units.
+/// Returns the look of bone in Hounsfield units, or of skin, in light. `air`: the value of air,
+/// -1000 in those units.
 Look ct_look(double air, bool skin, double chord);
 /// Returns the background clear, the rest dense and in light: tissue warm, or material.
 Look scan_look(const LookedAt& data, bool medical);
@@ -27,11 +28,11 @@ Look scan_look(const LookedAt& data, bool medical);
 Look microscopy_look(const LookedAt& data);
 /// Scatters white light.
 Look fog_look(const LookedAt& data);
-/// Surfaces of equal value.
+/// Returns surfaces of equal value.
 Look simulation_look(const LookedAt& data);
 /// Returns the surface between two values.
 Look mask_look(double lower, double upper);
-/// Values on and below the surface.
+/// Returns values on and below the surface of a body.
 Look body_look(const LookedAt& data);
 
 }  // namespace pellucid

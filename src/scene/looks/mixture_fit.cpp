@@ -101,7 +101,8 @@ class Fitter {
 
   const double* cell(std::size_t i) const { return &cells_.mean[i * n_]; }
 
-  /// In units of the floors, so that no dimension counts more by its unit alone.
+  /// Returns the squared distance in units of the floors, so that no dimension counts more by its
+  /// unit alone.
   double square_distance(const double* x, const double* y) const {
     double square = 0;
     for (std::size_t k = 0; k < n_; ++k) square += (x[k] - y[k]) * (x[k] - y[k]) / floor_[k];

@@ -125,7 +125,8 @@ class Expectation {
     return weight * (largest + std::log(sum));
   }
 
-  /// Log-density of component c, the mean over a cell whose covariance is `spread` (null: none).
+  /// Returns the log-density of component c, the mean over a cell whose covariance is `spread`
+  /// (null: none).
   double at(std::size_t c, const double* x, const double* spread) {
     const LogDensity& density = densities_[c];
     double* const d = &distance_[c * n()];
@@ -164,7 +165,7 @@ class Expectation {
   std::array<double, max_components> share_{};  ///< of a cell in each component
 };
 
-/// Maximisation. Returns the component that the sums describe.
+/// Returns the component that the sums describe: the step of maximisation.
 NormalComponent moved(const NormalComponent& before, const Moments& sums, double total,
                       const std::vector<double>& floor) {
   const std::size_t n = floor.size();

@@ -39,7 +39,7 @@ std::string interval_text(const Support& support) {
   return "from " + number(support.lower) + " to " + number(support.upper);
 }
 
-/// Why a layer's function shows none of its values; empty: it shows some.
+/// Says why a layer's function shows none of its values; empty: it shows some.
 std::string why_clear(const Layer& layer) {
   const TransferFunction* const function = table_of(layer);
   if (function == nullptr || has_surfaces(layer) || layer.projection) return {};

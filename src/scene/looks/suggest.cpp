@@ -74,7 +74,7 @@ Survey survey(const Channels& channels, const std::vector<int>& which, int bins,
   return survey;
 }
 
-/// K of coordinates in bins as that of values. Bins may be too narrow for a number to hold.
+/// Turns K of coordinates in bins into that of values. Bins may be too narrow for a number to hold.
 std::vector<std::vector<double>> of_values(std::vector<std::vector<double>> matrix,
                                            const std::vector<HistogramAxis>& axes) {
   for (auto& row : matrix) {

@@ -46,7 +46,7 @@ class BackgroundBin {
 
   /// Returns whether coordinates in bins, one per axis, are within so many standard deviations.
   bool holds(const double* coordinates, double deviations = 3) const;
-  /// In bins.
+  /// Returns the mean, in bins.
   const std::vector<double>& mean() const noexcept { return mean_; }
 
  private:

@@ -31,7 +31,7 @@ class Hills {
   int size() const { return static_cast<int>(h_.size()); }
   double at(int i) const { return h_[static_cast<std::size_t>(i)]; }
 
-  /// The first of equal ones counts as the top.
+  /// Returns whether a bin is a top; the first of equal ones counts as one.
   bool is_top(int i) const {
     if (i > 0 && !(at(i) > at(i - 1))) return false;
     int j = i;

@@ -14,7 +14,7 @@
 namespace pellucid {
 namespace {
 
-/// Ascending, the outermost drawn in.
+/// Sorts a sample, ascending, and draws the outermost values in.
 std::vector<double> sorted(std::vector<double> sample) {
   std::sort(sample.begin(), sample.end());
   if (sample.empty()) return sample;

@@ -32,8 +32,8 @@ void visit_even_places(std::size_t size, const Visit& visit) {
   }
 }
 
-/// Up to 2^18 finite values, ascending, the outermost 0.1 % at either end drawn in. They sort in
-/// milliseconds.
+/// Returns up to 2^18 finite values, ascending, the outermost 0.1 % at either end drawn in. They
+/// sort in milliseconds.
 std::vector<double> value_sample(const Volume& volume);
 /// Returns the first channel at up to 2^18 points that are even in the mesh's volume.
 std::vector<double> value_sample(const MeshChannels& channels);

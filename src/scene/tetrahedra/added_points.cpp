@@ -56,7 +56,7 @@ Quadrilateral quadrilateral(const MidNode& node, const std::int32_t* cell) {
   return corners;
 }
 
-/// The middles of quadrilaterals that cells bring along: their neighbours may lack them.
+/// Returns the middles of quadrilaterals that cells bring along: their neighbours may lack them.
 Middles given_middles(const UnstructuredGrid& grid) {
   Middles middles;
   for (CellWalk walk(grid); !walk.done();) {

@@ -16,7 +16,7 @@ std::string named(const UnstructuredGrid& grid, std::size_t cell) {
   return "cell " + std::to_string(cell_number(grid, cell));
 }
 
-/// "cell 7", the one that a corner belongs to.
+/// Returns "cell 7", the one that a corner belongs to.
 std::string cell_of_corner(const UnstructuredGrid& grid, std::size_t corner) {
   CellWalk walk(grid);
   std::size_t cell = 0;

@@ -6,8 +6,8 @@ namespace {
 
 using Weights = std::array<int, 4>;
 
-/// The weights of the corners of a triangle's node, which add up to the order. Nodes stand on
-/// triangles one inside of the other: the corners, then the edges, then those within.
+/// Returns the weights of the corners of a triangle's node, which add up to the order. Nodes stand
+/// on triangles one inside of the other: the corners, then the edges, then those within.
 std::array<int, 3> triangle_weights(int index, int order) {
   int least = 0, most = order;
   while (index != 0 && index >= 3 * order) {
@@ -30,7 +30,7 @@ std::array<int, 3> triangle_weights(int index, int order) {
   return weights;
 }
 
-/// The same of a tetrahedron: the weights of the corners 1, 2, 3 and 0.
+/// Returns the same of a tetrahedron: the weights of the corners 1, 2, 3 and 0.
 Weights tetrahedron_weights(int index, int order) {
   // Where the weight of each corner stands, the corners of edges, and of sides the weights that
   // change in them, in the order of their own triangle, and the one that does not.

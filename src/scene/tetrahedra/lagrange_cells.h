@@ -21,7 +21,7 @@ namespace pellucid {
 /// Positions of the nodes of one kind of Lagrange cell in its list of points: VTK's order.
 class LagrangeNodes {
  public:
-  /// `layout`: as UnstructuredGrid::layouts, checked.
+  /// Finds the nodes. `layout`: as UnstructuredGrid::layouts, checked.
   LagrangeNodes(CellShape shape, const std::int32_t* layout);
 
   /// Returns the node at (i, j, k) of the lattice. Of a tetrahedron they are the weights of the
@@ -62,8 +62,8 @@ class LagrangeTables {
   std::map<Key, LagrangeNodes> tables_;
 };
 
-/// A tetrahedron at every place of the lattice, octahedra between them, each cut into four around
-/// its shortest diagonal, and tetrahedra upside down between those.
+/// Makes a tetrahedron at every place of the lattice, octahedra between them, each cut into four
+/// around its shortest diagonal, and tetrahedra upside down between those.
 template <class Emit>
 void tetrahedralize_lagrange_tetrahedron(const LagrangeNodes& nodes, const std::int32_t* v,
                                          const Vec3<double>* points, const Emit& emit) {
@@ -85,9 +85,9 @@ void tetrahedralize_lagrange_tetrahedron(const LagrangeNodes& nodes, const std::
   }
 }
 
-/// 15 nodes: four in the middle of the triangles and one of the cell, behind the 10 of a quadratic
-/// one. Around the last: a tetrahedron to each of the four triangles beside a corner, and three to
-/// each of those in the middle of a side, which is cut at its node.
+/// Cuts a tetrahedron of 15 nodes: four in the middle of the triangles and one of the cell, behind
+/// the 10 of a quadratic one. Around the last: a tetrahedron to each of the four triangles beside a
+/// corner, and three to each of those in the middle of a side, which is cut at its node.
 template <class Emit>
 void tetrahedralize_tetrahedron_of_15(const std::int32_t* v, const Emit& emit) {
   constexpr int corner[4][4] = {{0, 4, 6, 7}, {1, 5, 4, 8}, {2, 6, 5, 9}, {3, 7, 8, 9}};
@@ -125,7 +125,8 @@ void tetrahedralize_lagrange_wedge(const LagrangeNodes& nodes, const std::int32_
   }
 }
 
-/// 21 nodes: in each of the three layers a triangle of seven, the last in its middle.
+/// Cuts a wedge of 21 nodes: in each of the three layers a triangle of seven, the last in its
+/// middle.
 template <class Emit>
 void tetrahedralize_wedge_of_21(const std::int32_t* v, const Emit& emit) {
   constexpr int layer[3][7] = {

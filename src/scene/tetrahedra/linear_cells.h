@@ -34,13 +34,13 @@ void tetrahedralize_cone(std::int32_t apex, std::int32_t a, std::int32_t b, std:
   }
 }
 
-/// The base is points 0 to 3, in a circle.
+/// Cuts a pyramid. Its base is points 0 to 3, in a circle.
 template <class Emit>
 void tetrahedralize_pyramid(const std::int32_t* v, const Emit& emit) {
   tetrahedralize_cone(v[4], v[0], v[1], v[2], v[3], emit);
 }
 
-/// The triangles are points 0 to 2 and, in the same order, 3 to 5.
+/// Cuts a wedge. Its triangles are points 0 to 2 and, in the same order, 3 to 5.
 template <class Emit>
 void tetrahedralize_wedge(const std::int32_t* v, const Emit& emit) {
   const auto first = static_cast<int>(std::min_element(v, v + 6) - v);
@@ -50,7 +50,7 @@ void tetrahedralize_wedge(const std::int32_t* v, const Emit& emit) {
   tetrahedralize_cone(v[first], v[own + i], v[own + j], v[other + j], v[other + i], emit);
 }
 
-/// Points numbered x fastest.
+/// Cuts a voxel, whose points are numbered x fastest.
 template <class Emit>
 void tetrahedralize_voxel(const std::int32_t* v, const Emit& emit) {
   const auto first = static_cast<unsigned>(std::min_element(v, v + 8) - v);
@@ -81,7 +81,7 @@ void tetrahedralize_voxel(const std::int32_t* v, const Emit& emit) {
   }
 }
 
-/// The bottom is points 0 to 3, in a circle; the top, in the same order, 4 to 7.
+/// Cuts a hexahedron. Its bottom is points 0 to 3, in a circle; the top, in the same order, 4 to 7.
 template <class Emit>
 void tetrahedralize_hexahedron(const std::int32_t* v, const Emit& emit) {
   const std::int32_t voxel[8] = {v[0], v[1], v[3], v[2], v[4], v[5], v[7], v[6]};

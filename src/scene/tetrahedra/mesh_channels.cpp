@@ -22,7 +22,7 @@ namespace {
   throw Error((mesh.name().empty() ? "mesh" : mesh.name()) + ": " + message);
 }
 
-/// 1 for the points that tetrahedra use; empty where all are used.
+/// Returns 1 for the points that tetrahedra use; empty where all are used.
 std::vector<std::uint8_t> used_points(const TetrahedralMesh& mesh) {
   if (mesh.statistics().unused_points == 0) return {};
   std::vector<std::uint8_t> used(mesh.points().size(), 0);

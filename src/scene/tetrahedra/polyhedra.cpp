@@ -148,7 +148,8 @@ std::int32_t PolyhedronApex::operator()(const GridCell& cell,
   return found == distinct.end() ? -1 : *found;
 }
 
-/// From face to face over the edges, which two of them have, in opposite directions.
+/// Orients the faces, from face to face over the edges, which two of them have, in opposite
+/// directions.
 void PolyhedronApex::orient_faces(const GridCell& cell) {
   edges_.clear();
   const std::size_t faces = cell.layout.size() - 2;

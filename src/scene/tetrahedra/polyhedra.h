@@ -57,9 +57,9 @@ class PolyhedronApex {
   explicit PolyhedronApex(const Vec3<double>* points) noexcept
       : points_(points), triangulation_(points) {}
 
-  /// -1 where all tetrahedra to `mean` lie on the same side of their triangles, as they should;
-  /// else the first of the cell's points of which that is true; -1 if there is none. `distinct` are
-  /// these points, ascending.
+  /// Returns -1 where all tetrahedra to `mean` lie on the same side of their triangles, as they
+  /// should; else the first of the cell's points of which that is true; -1 if there is none.
+  /// `distinct` are these points, ascending.
   std::int32_t operator()(const GridCell& cell, std::span<const std::int32_t> distinct,
                           const Vec3<double>& mean);
 

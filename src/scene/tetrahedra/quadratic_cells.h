@@ -13,8 +13,8 @@
 
 namespace pellucid {
 
-/// An octahedron, of whose six points 0 and 3, 1 and 4, 2 and 5 are opposite to each other: four
-/// tetrahedra around its shortest diagonal, the one that is most likely inside where edges are
+/// Cuts an octahedron, of whose six points 0 and 3, 1 and 4, 2 and 5 are opposite to each other:
+/// four tetrahedra around its shortest diagonal, the one that is most likely inside where edges are
 /// curved.
 template <class Emit>
 void tetrahedralize_octahedron(const std::int32_t* v, const Vec3<double>* points,
@@ -36,7 +36,7 @@ void tetrahedralize_octahedron(const std::int32_t* v, const Vec3<double>* points
   }
 }
 
-/// 10 nodes: a tetrahedron at each corner, and the octahedron of the edges' nodes.
+/// Cuts a tetrahedron of 10 nodes: one at each corner, and the octahedron of the edges' nodes.
 template <class Emit>
 void tetrahedralize_quadratic_tetrahedron(const std::int32_t* v, const Vec3<double>* points,
                                           const Emit& emit) {
@@ -48,8 +48,8 @@ void tetrahedralize_quadratic_tetrahedron(const std::int32_t* v, const Vec3<doub
   tetrahedralize_octahedron(octahedron, points, emit);
 }
 
-/// 14 nodes: a pyramid at each corner, one upside down between them, and a tetrahedron below each
-/// side.
+/// Cuts a pyramid of 14 nodes: one at each corner, one upside down between them, and a tetrahedron
+/// below each side.
 template <class Emit>
 void tetrahedralize_quadratic_pyramid(const std::int32_t* v, const Emit& emit) {
   const std::int32_t apex = v[4], middle = v[13];
@@ -66,7 +66,7 @@ void tetrahedralize_quadratic_pyramid(const std::int32_t* v, const Emit& emit) {
   tetrahedralize_pyramid(inverted, emit);
 }
 
-/// 18 nodes: two layers of four wedges.
+/// Cuts a wedge of 18 nodes: two layers of four.
 template <class Emit>
 void tetrahedralize_quadratic_wedge(const std::int32_t* v, const Emit& emit) {
   // Each layer of nodes: the corners of a triangle, then the middles of its edges.
@@ -84,7 +84,7 @@ void tetrahedralize_quadratic_wedge(const std::int32_t* v, const Emit& emit) {
   }
 }
 
-/// 27 nodes: eight hexahedra.
+/// Cuts a hexahedron of 27 nodes: into eight.
 template <class Emit>
 void tetrahedralize_quadratic_hexahedron(const std::int32_t* v, const Emit& emit) {
   // The nodes as a grid, x fastest.

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int bits_of_axis = 21;
 
-/// Bits of a number of 21, each with two empty ones in front of it.
+/// Returns the bits of a number of 21, each with two empty ones in front of it.
 std::uint64_t spread(std::uint64_t x) noexcept {
   x = (x | x << 32) & 0x001f00000000ffff;
   x = (x | x << 16) & 0x001f0000ff0000ff;

@@ -84,7 +84,7 @@ VolumeData lengths(const VolumeData& vectors, int components) {
       vectors);
 }
 
-/// "\"a\", \"b\" (cells)"
+/// Returns the names of the arrays: "\"a\", \"b\" (cells)".
 std::string names_of(const UnstructuredGrid& grid) {
   std::string names;
   for (const MeshArray& array : grid.arrays) {

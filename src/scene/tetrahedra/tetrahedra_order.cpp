@@ -37,7 +37,7 @@ Box<double> box_of(const TetrahedralizedCells& cells) {
   return box;
 }
 
-/// The order of `count` things, whose places place(i) tells.
+/// Returns the order of `count` things, whose places place(i) tells.
 template <class Place>
 std::vector<std::int32_t> order_of(std::size_t count, const MortonCurve& curve,
                                    const ParallelFor& parallel, Place&& place) {

@@ -24,8 +24,8 @@ std::int32_t number_of(const std::vector<std::int32_t>& numbers, std::size_t poi
   return numbers.empty() ? static_cast<std::int32_t>(point) : numbers[point];
 }
 
-/// Six times the volume of a tetrahedron, positive or negative by its orientation; 0 where rounding
-/// does not tell.
+/// Returns six times the volume of a tetrahedron, positive or negative by its orientation; 0 where
+/// rounding does not tell.
 double six_volumes(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c,
                    const Vec3<double>& d) {
   const Vec3<double> p = b - a, q = c - a, r = d - a;
@@ -71,7 +71,7 @@ class Check {
     }
   }
 
-  /// `corners` in ascending order.
+  /// Checks a tetrahedron. `corners` in ascending order.
   void tetrahedron(std::size_t i, const std::int32_t* corners) const {
     const auto named = [i] { return "tetrahedron " + std::to_string(i); };
     if (corners[0] < 0 || static_cast<std::size_t>(corners[3]) >= d_.points.size()) {

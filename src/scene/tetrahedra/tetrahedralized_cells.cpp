@@ -20,7 +20,7 @@ struct Part {
   std::size_t lacking = 0, tetrahedron = 0;
 };
 
-/// Parts of a thousand cells, and behind them where the last one ends.
+/// Returns parts of a thousand cells, and behind them where the last one ends.
 std::vector<Part> make_parts(const UnstructuredGrid& grid) {
   constexpr std::size_t cells_of_a_part = 1024;
   std::vector<Part> parts;

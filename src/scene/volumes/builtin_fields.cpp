@@ -20,7 +20,7 @@ double marschner_lobb(double x, double y, double z) {
   return ((1 - std::sin(pi * z / 2)) + (1 + rho) / 4) / 2.5;
 }
 
-/// ψ₄₂₀ without its constant: the radial part σ²(12 − σ)e^(−σ/4) times 3cos²θ − 1.
+/// Returns ψ₄₂₀ without its constant: the radial part σ²(12 − σ)e^(−σ/4) times 3cos²θ − 1.
 double orbital_4d_z2(double sigma_squared, double zeta) {
   const double sigma = std::sqrt(sigma_squared);
   return (12 - sigma) * (3 * zeta * zeta - sigma_squared) * std::exp(-sigma / 4);

@@ -37,7 +37,7 @@ class DerivedVolume {
     out_ = values_.writable();
   }
 
-  /// Row j + n[1] · k.
+  /// Returns row j + n[1] · k.
   std::span<float> row(std::size_t r) const noexcept { return out_.subspan(r * width_, width_); }
   /// Rounds a result to float. beyond() is true from then on if a volume cannot hold it.
   float held(double result) noexcept {
@@ -59,7 +59,8 @@ class DerivedVolume {
     parallel(parts, [&](int first, int last) { body(begin(first), begin(last)); });
   }
 
-  /// The volume, once all rows are there. Throws Error where one of them holds what cannot be.
+  /// Returns the volume, once all rows are there. Throws Error where one of them holds what cannot
+  /// be.
   Volume finish() {
     if (beyond_.load()) {
       const auto at = std::find_if(out_.begin(), out_.end(), [](float v) { return std::isinf(v); });

@@ -121,7 +121,8 @@ class SampledRows {
   }
 
   std::size_t size() const { return taken_; }
-  /// The fractional parts of multiples of the golden ratio are even at every scale.
+  /// Returns row n of those that are taken. The fractional parts of multiples of the golden ratio
+  /// are even at every scale.
   std::size_t operator[](std::size_t n) const {
     if (taken_ == rows_) return n;
     const double s = static_cast<double>(n) / std::numbers::phi;

@@ -24,7 +24,7 @@ constexpr double largest_sigma = 16384;
 /// The weights of a Gaussian along one axis, whose border values are repeated.
 class AxisWeights {
  public:
-  /// `sigma` in data values; `values` of them along the axis.
+  /// Computes the weights. `sigma` in data values; `values` of them along the axis.
   AxisWeights(double sigma, int values) : reach_(static_cast<int>(cut * sigma)), last_(values - 1) {
     double sum = 0;
     for (int d = -reach_; d <= reach_; ++d) {
@@ -65,7 +65,7 @@ class SliceSums {
         sum_(nx_ * static_cast<std::size_t>(ny)),
         last_(sum_.size()) {}
 
-  /// Sums of count(value), for slice k.
+  /// Sums up count(value), for slice k.
   template <class Value, class Count>
   void make(const StructuredGrid<Value, double>& grid, const std::array<AxisWeights, 3>& weights,
             int k, const Count& count) {

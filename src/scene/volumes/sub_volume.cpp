@@ -25,7 +25,7 @@ void check_box(const std::array<int, 3>& dimensions, const IndexBox& box, const 
   }
 }
 
-/// Positions of the values along a rectilinear axis, in its own coordinates.
+/// Returns the positions of the values along a rectilinear axis, in its own coordinates.
 std::vector<double> positions(const std::vector<double>& coordinates, Centering centering) {
   if (centering == Centering::point) return coordinates;
   std::vector<double> centres;
@@ -35,8 +35,8 @@ std::vector<double> positions(const std::vector<double>& coordinates, Centering 
   return centres;
 }
 
-/// Index of the last value at or before a position, and of the first at or behind it; -1 and the
-/// number of values if there is none.
+/// Returns the index of the last value at or before `lower`, and of the first at or behind `upper`;
+/// -1 and the number of values if there is none.
 std::pair<double, double> around(double lower, double upper, const std::vector<double>& places) {
   if (places.empty()) return {std::floor(lower), std::ceil(upper)};
   const auto before = std::ranges::upper_bound(places, lower) - places.begin() - 1;

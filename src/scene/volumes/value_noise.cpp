@@ -66,7 +66,7 @@ class Place {
 
   bool is_whole() const { return is_whole_; }
   double value() const { return value_; }
-  /// Magnitudes of the second differences along one axis of those along another.
+  /// Returns the magnitudes of the second differences along one axis of those along another.
   const std::array<std::optional<double>, 3>& mixed() const { return mixed_; }
   double gradient(const std::array<double, 3>& scale) const {
     double square = 0;
