@@ -12,8 +12,8 @@ namespace pellucid {
 
 namespace {
 
-/// Places of the axes that are left when those of one entry in front, then behind, are dropped
-/// until `wanted` are left.
+/// Returns the places of the axes that are left when those of one entry in front, then behind, are
+/// dropped until `wanted` are left.
 std::vector<std::size_t> squeezed(std::span<const std::int64_t> shape, std::size_t wanted) {
   std::size_t begin = 0, end = shape.size();
   while (end - begin > wanted && shape[begin] == 1) ++begin;

@@ -20,8 +20,8 @@ struct ArrayAxes {
   std::string guess;  ///< letters of four axes that nobody named: "czyx"; else empty
 };
 
-/// Letters of axes in the order of an array's indices: z, y and x once each, and c for components
-/// or t for steps in time; "czyx". Returns them in small letters. Throws Error.
+/// Returns letters of axes in small letters, in the order of an array's indices: z, y and x once
+/// each, and c for components or t for steps in time; "czyx". Throws Error for others.
 std::string checked_axes(const std::string& letters);
 
 /// Returns the axes of an array of this shape. Axes of one entry in front and behind do not count.
@@ -33,7 +33,7 @@ std::string checked_axes(const std::string& letters);
 ArrayAxes array_axes(std::span<const std::int64_t> shape, const std::optional<std::string>& letters,
                      const std::string& what);
 
-/// "3, 4, 5"
+/// Returns "3, 4, 5".
 std::string shape_text(std::span<const std::int64_t> shape);
 
 /// Returns the guess of four axes, and how to say otherwise; for notes.

@@ -154,8 +154,8 @@ std::string without_ending(const std::string& word) {
   return {};
 }
 
-/// "x", "x_2", "grid_xt", "dim_x", "tomo_xdim", "west_east_stag", but no "x1", of which there are
-/// three.
+/// Returns whether a name is one of these, as "x", "x_2", "grid_xt", "dim_x", "tomo_xdim",
+/// "west_east_stag", but no "x1", of which there are three.
 template <std::size_t count>
 bool is_name_of(const std::array<std::string_view, count>& names, const std::string& name,
                 const std::vector<std::string>& words) {

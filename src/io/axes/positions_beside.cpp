@@ -50,7 +50,7 @@ bool is_wide_coordinate(const ArrayBeside& array, std::span<const std::int64_t> 
   });
 }
 
-/// Coordinates of all axes or points in one array, of any size.
+/// Returns whether an array holds the coordinates of all axes or points, of any size.
 bool is_list_of_coordinates(const ArrayBeside& array) {
   constexpr auto names = std::to_array<std::string_view>(
       {"coords", "coordinates", "gridcoords", "gridcoordinates", "positions"});
@@ -156,7 +156,7 @@ class Reader {
     return true;
   }
 
-  /// "x, y, z" of the array's axes.
+  /// Returns "x, y, z" of the array's axes.
   std::string order_text() const {
     std::vector<std::pair<std::size_t, char>> axes;
     for (std::size_t a = 0; a < 3; ++a) axes.emplace_back(found_.space[a], axis_letters[a]);
@@ -331,7 +331,7 @@ class Reader {
     tell("arrays " + list + " place it; its axes are " + order_text());
   }
 
-  /// Coordinates of the fourth axis.
+  /// Reads the coordinates of the fourth axis.
   void read_times() {
     if (!axes_.components) return;
     for (const ArrayBeside& array : arrays_) {

@@ -137,7 +137,7 @@ class Missing {
       if (fits) numbers_.push_back(static_cast<Value>(number));
     }
   }
-  /// Bounds in the precision of the values.
+  /// Rounds a bound to the precision of the values.
   double rounded(double bound) const {
     if constexpr (std::is_same_v<Value, float>) {
       const bool fits = std::abs(bound) <= static_cast<double>(std::numeric_limits<float>::max());

@@ -132,8 +132,8 @@ VolumeFile open_dicom_without(const std::vector<DamagedDicomFile>& damaged,
   return file;
 }
 
-/// A DICOM series: a folder with its files, or any one of them. One file per slice, or frames with
-/// functional groups or a vector of their positions; sorted by position. The world is LPS, in
+/// Opens a DICOM series: a folder with its files, or any one of them. One file per slice, or frames
+/// with functional groups or a vector of their positions; sorted by position. The world is LPS, in
 /// millimetres. Values are those behind rescale slope and intercept, or the scaling of a dose.
 /// Colors are components. Compressed pixels go through GDCM. Damaged files of a folder are left
 /// out, and `options.note` is told.

@@ -20,13 +20,13 @@ struct DicomDataSet {
   std::map<DicomTag, std::string> values;  ///< as they stand in the file
   std::map<DicomTag, std::vector<DicomDataSet>> sequences;
 
-  /// Without the blanks around it, and with ? in the place of what is not ASCII; empty where there
-  /// is none.
+  /// Returns the text without the blanks around it, and with ? in the place of what is not ASCII;
+  /// empty where there is none.
   std::string text(DicomTag tag) const;
   /// Numbers written as text (DS, IS), between backslashes; empty where there is none or one of
   /// them is no finite number.
   std::vector<double> decimals(DicomTag tag) const;
-  /// Numbers of eight bytes (FD); empty where there is none or one is not finite.
+  /// Returns numbers of eight bytes (FD); empty where there is none or one is not finite.
   std::vector<double> reals(DicomTag tag) const;
   /// Returns a number of two bytes (US).
   std::optional<int> number(DicomTag tag) const;
@@ -47,8 +47,9 @@ struct DicomFile {
   bool encapsulated = false;  ///< pixels are in fragments, compressed
 };
 
-/// By its first bytes: "DICM" behind a preamble of 128 bytes; or, as old devices write, elements of
-/// group 2 or 8 at the start, with or without "DICM", or behind a preamble without it.
+/// Returns whether a file is DICOM by its first bytes: "DICM" behind a preamble of 128 bytes; or,
+/// as old devices write, elements of group 2 or 8 at the start, with or without "DICM", or behind a
+/// preamble without it.
 bool is_dicom(const ByteSource& source);
 
 /// Reads up to the pixels: files of PS3.10, explicit and implicit, of either byte order. Throws

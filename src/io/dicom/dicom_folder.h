@@ -29,7 +29,7 @@ struct DicomFolder {
 DicomFolder scan_dicom_folder(const std::filesystem::path& path,
                               const std::vector<DamagedDicomFile>& known = {});
 
-/// "3 files are left out; the first: ..."; empty where none is.
+/// Returns "3 files are left out; the first: ..."; empty where none is.
 std::string left_out_text(const std::vector<DamagedDicomFile>& files);
 
 /// Returns the series that is wanted: its number from 1, its UID or the unique end of it; where

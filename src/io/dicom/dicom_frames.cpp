@@ -43,7 +43,7 @@ DicomFrameOffsets refuse(std::string why) {
   return offsets;
 }
 
-/// Offsets of a vector of decimals from its first number.
+/// Returns the offsets of a vector of decimals from its first number.
 DicomFrameOffsets of_decimals(const DicomDataSet& data, DicomTag tag, const std::string& name,
                               int frames) {
   const std::vector<double> numbers = data.decimals(tag);

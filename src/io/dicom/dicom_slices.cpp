@@ -110,7 +110,7 @@ class FrameFacts {
     return numbers.empty() && detector_ != nullptr ? detector_->decimals(element) : numbers;
   }
 
-  /// The text of the element of the frame, whatever it is.
+  /// Returns the text of the element of the frame, whatever it is.
   std::string text(DicomTag group, DicomTag element) const {
     for (const DicomDataSet* groups : {frame_, shared_}) {
       const DicomDataSet* item = groups == nullptr ? nullptr : groups->item(group);
@@ -153,7 +153,7 @@ std::optional<std::array<Vec3<double>, 2>> directions(const std::vector<double>&
   return std::array{row * (1 / length(row)), column * (1 / length(column))};
 }
 
-/// Why the scale of the values is not known; empty where it is.
+/// Says why the scale of the values is not known; empty where it is.
 std::string refusal(const FrameFacts& facts) {
   const std::pair<DicomTag, const char*> scales[] = {
       {tag::slope, "RescaleSlope (0028,1053)"},
@@ -220,7 +220,7 @@ DicomSlice slice_of(const FrameFacts& facts) {
   return slice;
 }
 
-/// The unit of the values behind their scaling, and what is told of it.
+/// Sets the unit of the values behind their scaling, and what is told of it.
 void set_unit(const DicomDataSet& data, DicomImage& image) {
   const std::string type = data.text(tag::rescale_type);
   if (type == "HU") image.unit = type;

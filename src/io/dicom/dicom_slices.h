@@ -56,7 +56,7 @@ struct DicomSlice {
   double slope = 1, intercept = 0;
   std::vector<std::string> marks;  ///< as dicom_mark_values() returns them
 
-  /// For messages: the file, and the frame where there are several.
+  /// Names the slice in messages: the file, and the frame where there are several.
   std::string name() const;
 };
 

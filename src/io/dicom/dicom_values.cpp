@@ -103,7 +103,7 @@ std::uint64_t bits_at(const std::byte* bytes, bool swapped) {
   return std::bit_cast<Bits>(raw);
 }
 
-/// One component of a frame.
+/// Converts one component of a frame.
 template <std::size_t size, class Value>
 void convert(std::span<const std::byte> frame, const DicomSlice& slice, int component,
              std::span<Value> to) {

@@ -16,8 +16,8 @@ namespace pellucid {
 /// than the stored one; else f32, of 32 bits and more f64. Throws Error for slopes of 0.
 std::string dicom_value_type(const std::vector<DicomSlice>& slices, const std::string& name);
 
-/// slope · stored + intercept of all slices in their order, each component by itself. Throws
-/// DamagedDicom where some of several files cannot be decompressed, else Error.
+/// Returns slope · stored + intercept of all slices in their order, each component by itself.
+/// Throws DamagedDicom where some of several files cannot be decompressed, else Error.
 std::vector<VolumeData> read_dicom_values(const std::vector<DicomSlice>& slices,
                                           ComponentRange range, const std::string& name);
 

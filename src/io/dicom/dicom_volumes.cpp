@@ -206,7 +206,8 @@ std::vector<Part> parts_by_number(const Series& series, const Part& whole) {
   return parts;
 }
 
-/// Runs of slices whose numbers go along the normal, where each begins anew beside the last.
+/// Returns the runs of slices whose numbers go along the normal, where each begins anew beside the
+/// last.
 std::vector<Part> parts_by_run(const Series& series, const Part& whole) {
   Indices numbered = whole.slices;
   for (const std::size_t i : numbered) {

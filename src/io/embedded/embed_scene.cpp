@@ -55,7 +55,7 @@ class Files {
     return field;
   }
 
-  /// The same of a mesh, whose channels are arrays then.
+  /// Adds a mesh likewise, whose channels are arrays then.
   MeshSource add(const MeshChannels& mesh, std::string name) {
     MeshSource source;
     const std::string file = name_for(std::move(name));

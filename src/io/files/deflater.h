@@ -22,7 +22,7 @@ class Deflater {
   Deflater& operator=(const Deflater&) = delete;
 
   void put(std::span<const std::byte> bytes);
-  /// The end, with its checksum. Nothing may follow.
+  /// Writes the end, with its checksum. Nothing may follow.
   void finish();
 
  private:

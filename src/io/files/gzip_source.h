@@ -12,7 +12,8 @@ namespace pellucid {
 /// the file is cut off or damaged.
 ByteSource gzip_source(const std::filesystem::path& path);
 
-/// That where the file begins as gzip does, else the file as it is.
+/// Returns a source of what is unpacked where the file begins as gzip does, else of the file as it
+/// is.
 ByteSource plain_or_gzip_source(const std::filesystem::path& path);
 
 }  // namespace pellucid

@@ -16,17 +16,17 @@ using NextBytes = std::function<std::size_t(std::span<std::byte>)>;
 class Inflater {
  public:
   virtual ~Inflater() = default;
-  /// The next bytes, one at least unless there are none any more. Throws Error that begins with
-  /// `name` where they are damaged or end too early.
+  /// Reads the next bytes, one at least unless there are none any more. Throws Error that begins
+  /// with `name` where they are damaged or end too early.
   virtual std::size_t read(std::span<std::byte> to, const NextBytes& next,
                            const std::string& name) = 0;
 };
 
-/// zlib or gzip, whichever begins.
+/// Makes one for zlib or gzip, whichever begins.
 std::unique_ptr<Inflater> make_zlib_inflater();
-/// Deflate alone, without a header or a checksum, as zip archives have it.
+/// Makes one for Deflate alone, without a header or a checksum, as zip archives have it.
 std::unique_ptr<Inflater> make_deflate_inflater();
-/// bzip2; throws Error that begins with `name` where the build has none.
+/// Makes one for bzip2; throws Error that begins with `name` where the build has none.
 std::unique_ptr<Inflater> make_bzip2_inflater(const std::string& name);
 
 }  // namespace pellucid

@@ -61,8 +61,9 @@ void apply_machine(const fs::path& root, MemoryLimit& limit) {
         "this machine");
 }
 
-/// The limit of the group and of all above it. In a container the path may be that of the host, of
-/// which only the end is there, or nothing: the walk upwards then finds the container's own.
+/// Applies the limit of the group and of all above it. In a container the path may be that of the
+/// host, of which only the end is there, or nothing: the walk upwards then finds the container's
+/// own.
 void apply_group(const fs::path& folder, const fs::path& group, const char* file,
                  MemoryLimit& limit) {
   for (fs::path at = group.relative_path();; at = at.parent_path()) {
@@ -101,7 +102,8 @@ void apply_resource(Resource resource, std::uintmax_t taken, const char* of, Mem
   lower(limit, set.rlim_cur > taken ? set.rlim_cur - taken : 0, of);
 }
 
-/// /proc/self/statm: pages of address space, resident, shared, of code, 0, of data and stack.
+/// Applies the limits of the process. /proc/self/statm has pages of address space, resident,
+/// shared, of code, 0, of data and stack.
 void apply_resources(const fs::path& root, MemoryLimit& limit) {
   std::ifstream file(root / "proc/self/statm");
   std::uintmax_t space = 0, resident = 0, shared = 0, code = 0, none = 0, data = 0;

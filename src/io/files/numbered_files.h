@@ -46,8 +46,8 @@ struct NamePattern {
 std::optional<NamePattern> name_pattern(const std::string& text,
                                         std::size_t* conversions = nullptr);
 
-/// The files of a folder whose names satisfy, by name; `others` is how many do not. Files that
-/// macOS puts beside others (AppleDouble, "._x") are none of either. Throws Error.
+/// Returns the files of a folder whose names satisfy, by name; `others` is how many do not. Files
+/// that macOS puts beside others (AppleDouble, "._x") are none of either. Throws Error.
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
                                             const std::function<bool(const std::string&)>& wanted,
                                             std::size_t* others = nullptr);

@@ -15,7 +15,7 @@ namespace {
 
 class ZlibInflater : public Inflater {
  public:
-  /// `window_bits` as of inflateInit2().
+  /// Begins a stream. `window_bits` as of inflateInit2().
   explicit ZlibInflater(int window_bits) : has_header_(window_bits > 0) {
     if (inflateInit2(&state_, window_bits) != Z_OK) throw std::bad_alloc();
   }

@@ -79,7 +79,7 @@ std::optional<VariableAttribute> read_attribute(hid_t dataset, const char* name)
   return read;
 }
 
-/// Called by HDF5, through which no exception may pass.
+/// Takes a name for HDF5, through which no exception may pass.
 herr_t take_name(hid_t, const char* name, const H5A_info_t*, void* to) noexcept {
   static_cast<std::vector<std::string>*>(to)->emplace_back(name);
   return 0;
@@ -99,7 +99,7 @@ std::string_view behind(std::string_view object, std::string_view key) {
   return begin == std::string_view::npos ? std::string_view() : object.substr(begin);
 }
 
-/// {"axes": [{"key": "z", "typeFlags": 2, "resolution": 0, "description": ""}, …]}
+/// Reads {"axes": [{"key": "z", "typeFlags": 2, "resolution": 0, "description": ""}, …]}
 std::vector<AxisTag> axis_tags(std::string_view json) {
   std::vector<AxisTag> tags;
   std::size_t begin = json.find('{');
@@ -251,7 +251,7 @@ std::optional<std::pair<hsize_t, hsize_t>> written_chunks(hid_t dataset, hid_t h
   return std::pair{written, total};
 }
 
-/// Called by HDF5, through which no exception may pass. Links to elsewhere are not followed.
+/// Takes a name for HDF5, through which no exception may pass. Links to elsewhere are not followed.
 herr_t take_link_name(hid_t, const char* name, const H5L_info_t* about, void* to) noexcept {
   auto& names = *static_cast<std::vector<std::string>*>(to);
   constexpr std::size_t max_names = 4096;

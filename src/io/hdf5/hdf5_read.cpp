@@ -279,7 +279,7 @@ herr_t take_name(hid_t, const char* name, const H5O_info_t* about, void* names) 
   return 0;
 }
 
-/// Called by HDF5, through which no exception may pass.
+/// Takes a link for HDF5, through which no exception may pass.
 herr_t take_link(hid_t group, const char* name, const H5L_info_t* about, void* to) noexcept {
   if (about->type != H5L_TYPE_EXTERNAL) return 0;
   std::vector<char> value(about->u.val_size);

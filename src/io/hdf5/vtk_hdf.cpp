@@ -108,8 +108,9 @@ VtkHdfContents read_contents(std::span<const std::byte> from) {
   return contents;
 }
 
-/// By HDF5's signature, and by the name or the group's name, which stands in the root group's list:
-/// near the beginning of nearly all files, near the end of those whose group came last.
+/// Looks for HDF5's signature, and for the name or the group's name, which stands in the root
+/// group's list: near the beginning of nearly all files, near the end of those whose group came
+/// last.
 bool looks_like_vtk_hdf(const std::filesystem::path& path) {
   constexpr std::string_view signature = "\x89HDF\r\n\x1a\n", group = "VTKHDF";
   std::error_code error;

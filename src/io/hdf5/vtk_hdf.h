@@ -83,7 +83,7 @@ std::string vtk_hdf_type(const std::filesystem::path& path);
 /// The values of arrays one behind the other, each from a multiple of 8 bytes on.
 class VtkHdfValues {
  public:
-  /// Without the values.
+  /// Begins without the values.
   explicit VtkHdfValues(std::filesystem::path path) : path_(std::move(path)) {}
   /// Returns the number by which its values are asked for.
   std::size_t want(const VtkHdfArray& array, std::optional<std::int64_t> component = {},

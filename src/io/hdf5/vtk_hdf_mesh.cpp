@@ -161,7 +161,7 @@ class Reader {
                                          "FaceOffsets",
                                          "PolyhedronToFaces",
                                          "PolyhedronOffsets"};
-  /// Those of one piece; its points, faces and lists are counted from 0.
+  /// Lists of one piece, whose points, faces and lists are counted from 0.
   struct PieceFaces {
     std::span<const std::int64_t> points, offsets, uses, cell_offsets;
   };
@@ -260,7 +260,8 @@ class Reader {
     return list;
   }
 
-  /// Those of 64 bits come as doubles, which hold any count that memory does.
+  /// Returns whole numbers. Those of 64 bits come as doubles, which hold any count that memory
+  /// does.
   std::vector<std::int64_t> whole_numbers(std::size_t number, const char* name) const {
     std::vector<std::int64_t> list;
     std::visit(
@@ -280,7 +281,8 @@ class Reader {
     return list;
   }
 
-  /// `count` entries from where the last piece's ended. Throws Error where they are not there.
+  /// Returns `count` entries from where the last piece's ended. Throws Error where they are not
+  /// there.
   template <class Value>
   static std::span<const Value> take(const std::vector<Value>& list, std::size_t& from,
                                      std::int64_t count, std::size_t each, const char* name) {
@@ -360,7 +362,8 @@ class Reader {
     mesh.blocks.push_back(std::move(block));
   }
 
-  /// Which cells of a piece are ghosts, or which points are hidden; empty: there are no flags.
+  /// Returns which cells of a piece are ghosts, or which points are hidden; empty: there are no
+  /// flags.
   std::vector<bool> flagged(VtkHdfArray::Place place, std::size_t first, std::size_t count) const {
     const bool of_cells = place == VtkHdfArray::Place::cell;
     const unsigned any = of_cells ? duplicate_cell | refined_cell | hidden_cell : hidden_point;
@@ -378,7 +381,7 @@ class Reader {
     return ghost;
   }
 
-  /// Three numbers for each cell of a piece; empty: the file does not say them.
+  /// Returns three numbers for each cell of a piece; empty: the file does not say them.
   std::vector<double> orders_of(std::size_t first, std::size_t count) const {
     const Values* found = find("HIGHER_ORDER_DEGREES", VtkHdfArray::Place::cell);
     if (found == nullptr) found = find("HigherOrderDegrees", VtkHdfArray::Place::cell);
@@ -398,7 +401,7 @@ class Reader {
     return found == arrays_.end() ? nullptr : &*found;
   }
 
-  /// The values of a piece's points and of the cells that are kept.
+  /// Adds the values of a piece's points and of the cells that are kept.
   void add_arrays(std::size_t first_point, std::size_t points,
                   const std::vector<std::size_t>& cells, UnstructuredGrid& block) const {
     for (const Values& from : arrays_) {

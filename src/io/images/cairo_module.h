@@ -38,7 +38,7 @@ struct PagePoint {
 
 /// Axis of a box, as seen.
 struct PageAxis {
-  /// Steep ones have titles that run upwards.
+  /// Returns whether an axis is steep; its title then runs upwards.
   bool is_steep() const { return outward.x > 0.85 || outward.x < -0.85; }
 
   struct Tick {

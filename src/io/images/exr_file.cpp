@@ -44,7 +44,8 @@ class ChannelList {
     header_.compression() = Imf::ZIP_COMPRESSION;
   }
 
-  /// The numbers must live until the file is written; from one to the next it is `stride` bytes.
+  /// Adds a channel. The numbers must live until the file is written; from one to the next it is
+  /// `stride` bytes.
   template <class Number>
   void add(const char* name, Imf::PixelType type, const Number* first,
            std::size_t stride = sizeof(Number)) {

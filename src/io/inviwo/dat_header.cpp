@@ -126,7 +126,8 @@ std::optional<std::uint64_t> whole_number(const Fields& fields, const std::strin
               "\" is no whole number from " + std::to_string(least) + "; mend the header");
 }
 
-/// Inviwo writes matrices row by row: the vectors are rows, and what they span are columns.
+/// Reads a basis. Inviwo writes matrices row by row: the vectors are rows, and what they span are
+/// columns.
 void read_basis(const Fields& fields, const std::string& name, InviwoHeader& header) {
   std::array<Vec3<double>, 3> columns{};
   int count = 0;
@@ -200,8 +201,9 @@ bool is_dat_header(const fs::path& path) {
   return (!file_of(fields).empty() && has_dimensions(fields)) || fields.contains("datfile");
 }
 
-/// Such a header (.dat) and its file of values. Of Voreen the spacing (SliceThickness), of Inviwo
-/// basis vectors and offset, which span the cells that the values are the centres of. Throws Error.
+/// Opens such a header (.dat) and its file of values. Of Voreen the spacing (SliceThickness), of
+/// Inviwo basis vectors and offset, which span the cells that the values are the centres of. Throws
+/// Error.
 VolumeFile open_dat(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);

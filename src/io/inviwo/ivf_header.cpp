@@ -162,9 +162,9 @@ class IvfReader {
   std::set<std::string> seen_;
 };
 
-/// Inviwo's XML header (.ivf) and its file of values, which may be gzipped. Its BasisAndOffset
-/// spans the cells that the values are the centres of, in the world that WorldTransform says.
-/// Throws Error, also for several files of values.
+/// Opens Inviwo's XML header (.ivf) and its file of values, which may be gzipped. Its
+/// BasisAndOffset spans the cells that the values are the centres of, in the world that
+/// WorldTransform says. Throws Error, also for several files of values.
 VolumeFile open_ivf(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);

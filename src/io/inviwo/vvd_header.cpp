@@ -215,9 +215,9 @@ VolumeData mapped(VolumeData stored, const Mapping& mapping, const std::string& 
       stored);
 }
 
-/// A volume of Voreen (.vvd): a header in XML that names a file of values. Values stand at the
-/// offset and from there at steps of the spacing, both turned by the transformation. A mapping to
-/// real values other than Voreen's default is applied.
+/// Opens a volume of Voreen (.vvd): a header in XML that names a file of values. Values stand at
+/// the offset and from there at steps of the spacing, both turned by the transformation. A mapping
+/// to real values other than Voreen's default is applied.
 VolumeFile open_vvd(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);

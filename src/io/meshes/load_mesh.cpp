@@ -13,7 +13,7 @@ namespace pellucid {
 
 namespace {
 
-/// About how many tetrahedra a cell becomes.
+/// Returns about how many tetrahedra a cell becomes.
 std::uintmax_t pieces_of(const GridCell& cell) {
   // Below 2001 each: lagrange_points().
   const auto order = [&](std::size_t axis) {

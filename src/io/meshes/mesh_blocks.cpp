@@ -31,8 +31,8 @@ const MeshArray* find(const UnstructuredGrid& block, const MeshArray& like) {
   return nullptr;
 }
 
-/// One of each array that any block has, in the order of their first, without values: an empty
-/// array of the type that holds them all.
+/// Returns one of each array that any block has, in the order of their first, without values: an
+/// empty array of the type that holds them all.
 std::vector<MeshArray> all_arrays(const std::vector<UnstructuredGrid>& blocks,
                                   const std::string& name) {
   std::vector<MeshArray> list;
@@ -66,7 +66,7 @@ std::vector<MeshArray> all_arrays(const std::vector<UnstructuredGrid>& blocks,
   return list;
 }
 
-/// The values of all blocks, one after the other, in the type of `array`.
+/// Fills in the values of all blocks, one after the other, in the type of `array`.
 void fill(const std::vector<UnstructuredGrid>& blocks, MeshArray& array) {
   std::size_t count = 0;
   const auto components = static_cast<std::size_t>(array.components);
@@ -205,7 +205,8 @@ void compact(UnstructuredGrid& grid, const std::vector<std::int32_t>& target) {
   }
 }
 
-/// `first` are the numbers of the blocks' first points, and behind them that of all.
+/// Merges points of blocks. `first` are the numbers of the blocks' first points, and behind them
+/// that of all.
 void merge_points(const std::vector<std::size_t>& first, MeshFile& file) {
   UnstructuredGrid& grid = file.grid;
   std::unordered_multimap<Place, std::int32_t, PlaceHash> known;

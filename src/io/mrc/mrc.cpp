@@ -36,7 +36,7 @@ class MrcHeader {
 
   bool big_endian() const noexcept { return big_endian_; }
 
-  /// By the words' numbers in the format's description, from 1.
+  /// Return words by their numbers in the format's description, from 1.
   std::int32_t whole(std::size_t word) const { return at<std::int32_t>(word, big_endian_); }
   double real(std::size_t word) const { return static_cast<double>(at<float>(word, big_endian_)); }
   bool says(std::size_t word, std::string_view text) const {
@@ -53,7 +53,8 @@ class MrcHeader {
     return std::bit_cast<T>(raw);
   }
 
-  /// Word 54, the machine stamp, says it; where it does not, sizes and the mode do.
+  /// Finds the byte order. Word 54, the machine stamp, says it; where it does not, sizes and the
+  /// mode do.
   bool find_order() const {
     const int stamp = std::to_integer<int>(bytes_[4 * 53]);
     if (stamp == 0x11 || stamp == 0x44) return stamp == 0x11;
@@ -74,8 +75,8 @@ class MrcHeader {
   bool big_endian_ = false;
 };
 
-/// IMOD's files say so; others hold signed bytes since MRC2014, and unsigned ones before. Those
-/// show in the range that the header gives.
+/// Returns whether bytes have no sign. IMOD's files say so; others hold signed bytes since MRC2014,
+/// and unsigned ones before. Those show in the range that the header gives.
 bool has_unsigned_bytes(const MrcHeader& header) {
   constexpr std::int32_t imod_stamp = 1146047817;
   if (header.whole(39) == imod_stamp) return (header.whole(40) & 1) == 0;
@@ -104,7 +105,7 @@ std::string type_of(const MrcHeader& header, const std::string& name) {
   }
 }
 
-/// Unit vectors along the cell's edges a, b and c: a along x, b in the plane of x and y.
+/// Returns unit vectors along the cell's edges a, b and c: a along x, b in the plane of x and y.
 Mat3<double> cell_axes(const MrcHeader& header, const std::string& name) {
   std::array<double, 3> cosine{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -131,7 +132,7 @@ Mat3<double> cell_axes(const MrcHeader& header, const std::string& name) {
   return axes;
 }
 
-/// Which of the cell's edges columns, rows and sections are counted along, from 0.
+/// Returns which of the cell's edges columns, rows and sections are counted along, from 0.
 std::array<int, 3> axis_order(const MrcHeader& header, const ReadOptions& options,
                               const std::string& name) {
   const std::array<int, 3> counted{header.whole(17), header.whole(18), header.whole(19)};

@@ -94,9 +94,9 @@ class Header {
     if (b != 0 && a > std::numeric_limits<std::uint64_t>::max() / b) fail();
     return a * b;
   }
-  /// To whole words.
+  /// Returns the bytes that are missing to whole words.
   static std::uint64_t padding(std::uint64_t bytes) { return (4 - bytes % 4) % 4; }
-  /// Bytes of a value, by its type.
+  /// Returns the bytes of a value, by its type.
   std::uint64_t size_of(std::uint64_t type) const {
     constexpr std::array<std::uint64_t, 12> sizes{0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
     if (type >= sizes.size()) fail();

@@ -154,8 +154,8 @@ void read_box(const NetCdfVariable& variable, const Box& box, std::byte* to) {
   check_net_cdf(status, "the values of \"" + variable.name + "\"");
 }
 
-/// Whole numbers of 64 bits in the smallest type that holds all of them. Nothing where one of them
-/// is the default fill.
+/// Returns whole numbers of 64 bits in the smallest type that holds all of them. Nothing where one
+/// of them is the default fill.
 template <class Number>
 std::optional<VolumeData> read_whole_numbers(const NetCdfVolume& of, const Box& box,
                                              std::string& note) {

@@ -27,7 +27,7 @@ template <class Value>
 using Scaled =
     std::conditional_t<sizeof(Value) <= 2 || std::is_same_v<Value, float>, float, double>;
 
-/// slope · stored + intercept, a few stored values at a time.
+/// Reads slope · stored + intercept, a few stored values at a time.
 VolumeData read_scaled(const ReadOn& read, const NiftiHeader& header, std::size_t count,
                        const std::string& name) {
   return std::visit(
@@ -247,10 +247,10 @@ void note_header(const NiftiHeader& header, const NiftiFiles& files, const std::
   }
 }
 
-/// NIfTI-1 and NIfTI-2: .nii, or .hdr with .img, each also .gz; Analyze 7.5. The world is LPS. The
-/// map is the sform where it is the scanner's or stands alone, else the qform (as ITK 5.2 chooses),
-/// else what nibabel and SPM take. Colors, and an axis behind the third, are components; several
-/// such axes, complex numbers and CIFTI are refused.
+/// Opens NIfTI-1 and NIfTI-2: .nii, or .hdr with .img, each also .gz; Analyze 7.5. The world is
+/// LPS. The map is the sform where it is the scanner's or stands alone, else the qform (as ITK 5.2
+/// chooses), else what nibabel and SPM take. Colors, and an axis behind the third, are components;
+/// several such axes, complex numbers and CIFTI are refused.
 VolumeFile open_nifti(const std::filesystem::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);

@@ -32,7 +32,7 @@ std::int16_t type_of(const VolumeData& data) {
   return codes[data.index()];
 }
 
-/// Rows of the map from index to world, RAS, as they are before they are rounded.
+/// Returns the rows of the map from index to world, RAS, as they are before they are rounded.
 std::array<std::array<double, 4>, 3> map_of(const GridPlacement& placement) {
   std::array<std::array<double, 4>, 3> rows{};
   for (int row = 0; row < 3; ++row) {

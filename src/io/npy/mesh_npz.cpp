@@ -153,7 +153,8 @@ MeshBlocks read_mesh_npz(const std::filesystem::path& path, const MeshReadOption
   return mesh;
 }
 
-/// Archives of volumes begin in the same way; their directories tell them apart.
+/// Returns whether an archive holds a mesh. Those of volumes begin in the same way; their
+/// directories tell them apart.
 bool is_mesh_npz(const std::filesystem::path& path, std::string_view head) {
   if (!head.starts_with("PK\x03\x04")) return false;
   try {

@@ -183,7 +183,7 @@ constexpr std::array npy_types{NpyType{"u1", "u8"},  NpyType{"i1", "i8"},  NpyTy
                                NpyType{"i4", "i32"}, NpyType{"u8", "u64"}, NpyType{"i8", "i64"},
                                NpyType{"f2", "f16"}, NpyType{"f4", "f32"}, NpyType{"f8", "f64"}};
 
-/// Why a type is not read, and what to do.
+/// Says why a type is not read, and what to do.
 std::string advice_for(std::string_view kind) {
   const char letter = kind.empty() ? '\0' : kind[0];
   switch (letter) {
@@ -222,7 +222,7 @@ void set_type(const std::string& descr, const std::string& name, NpyArray& array
               "' is not read: " + advice_for(kind));
 }
 
-/// In values, for each axis of the array.
+/// Returns strides in values, for each axis of the array.
 std::vector<std::size_t> strides_of(const NpyArray& array) {
   const std::size_t axes = array.shape.size();
   std::vector<std::size_t> strides(axes, 1);

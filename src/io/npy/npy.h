@@ -14,7 +14,7 @@ namespace pellucid {
 
 struct ArrayBeside;
 
-/// What the header of a .npy file says.
+/// Contents of the header of a .npy file.
 struct NpyArray {
   std::string type;  ///< as of ValueLayout
   bool big_endian = false;

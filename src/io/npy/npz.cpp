@@ -33,7 +33,7 @@ struct NpzArray {
   std::vector<std::int64_t> shape = {};  ///< by read_shapes(); empty: a single value, or no array
 };
 
-/// The name is a file's in an archive, which may hold anything.
+/// Makes a name printable: it is a file's in an archive, which may hold anything.
 std::string printable(std::string text) {
   std::ranges::replace_if(
       text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, '?');
@@ -55,7 +55,7 @@ std::vector<NpzArray> arrays_of(const ByteSource& archive) {
   return arrays;
 }
 
-/// "a (64, 64, 64), b (3)", of the first ones.
+/// Returns "a (64, 64, 64), b (3)", of the first ones.
 std::string list_of(const ByteSource& archive, const std::vector<NpzArray>& arrays) {
   constexpr std::size_t longest = 1000;
   std::string list;

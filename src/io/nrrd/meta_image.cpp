@@ -128,7 +128,8 @@ std::vector<DataFile> find_files(const fs::path& path, const MetaImageHeader& he
   return files;
 }
 
-/// Several files of the same share one behind the other; one of them in place where that can be.
+/// Joins several files of the same share one behind the other; one of them in place where that can
+/// be.
 ByteSource joined_source(const std::vector<DataFile>& files, std::uintmax_t share,
                          const std::string& name) {
   std::vector<ByteSource> parts;
@@ -261,7 +262,8 @@ void check_numbers(const std::vector<Field>& fields, const std::string& name) {
   }
 }
 
-/// MetaIO reads as many numbers as the header says that there are axes, 2^32 - 3 for -3.
+/// Checks the fields. MetaIO reads as many numbers as the header says that there are axes, 2^32 - 3
+/// for -3.
 void check_fields(const std::vector<Field>& fields, const std::string& name) {
   if (value_of(fields, "NDims").find('-') != std::string::npos) {
     throw Error(name + ": the header says \"NDims\" below 0; mend the header");
@@ -372,8 +374,8 @@ VolumeSteps steps_of(const std::vector<Field>& fields, std::size_t count) {
   return steps;
 }
 
-/// MetaImage, .mha or .mhd, raw or zlib; values in one file or in one per slice. Channels and a
-/// fourth axis are components.
+/// Opens MetaImage, .mha or .mhd, raw or zlib; values in one file or in one per slice. Channels and
+/// a fourth axis are components.
 VolumeFile open_meta_image(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);

@@ -349,10 +349,10 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-/// NRRD, attached (.nrrd) or detached (.nhdr), raw, gzip, bzip2, ascii or hex. Turned from RAS or
-/// LAS to LPS; other spaces are taken as they are. Of a space of four axes the fourth is time.
-/// Cell-centred where all three axes say so. One of four axes that is none of space, by its kind or
-/// for want of a direction, holds components, and so does a fourth axis; steps in time by
+/// Opens NRRD, attached (.nrrd) or detached (.nhdr), raw, gzip, bzip2, ascii or hex. Turned from
+/// RAS or LAS to LPS; other spaces are taken as they are. Of a space of four axes the fourth is
+/// time. Cell-centred where all three axes say so. One of four axes that is none of space, by its
+/// kind or for want of a direction, holds components, and so does a fourth axis; steps in time by
 /// nrrd::steps_of().
 VolumeFile open_nrrd(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();

@@ -42,13 +42,13 @@ constexpr const char* type_of() {
 /// freeing them asks for threads, which a forked one has not.
 class File {
  public:
-  /// `delayed`: the values of voxels are read where they are asked for.
+  /// Opens a file. `delayed`: the values of voxels are read where they are asked for.
   File(const std::filesystem::path& path, bool delayed) : file_(path.string()) {
     openvdb::initialize();
     file_.setCopyMaxBytes(0);  // no copy of the file
     file_.open(delayed);
   }
-  /// Several of one name have a number behind it: "density[1]".
+  /// Returns the names of the grids. Several of one name have a number behind it: "density[1]".
   std::vector<std::string> names() const {
     std::vector<std::string> names;
     for (auto name = file_.beginName(); name != file_.endName(); ++name) {
@@ -80,7 +80,8 @@ std::optional<Box> active_box(const openvdb::GridBase& grid) {
   return active;
 }
 
-/// OpenVDB's matrices stand behind the vector: their rows are the axes, the last the origin.
+/// Returns where a grid is. OpenVDB's matrices stand behind the vector: their rows are the axes,
+/// the last the origin.
 GridPlacement placement_of(const openvdb::GridBase& grid, const Box& box) {
   const openvdb::Mat4R matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
   const auto row = [&](int i) { return Vec3<double>{matrix[i][0], matrix[i][1], matrix[i][2]}; };
@@ -97,8 +98,8 @@ GridPlacement placement_of(const openvdb::GridBase& grid, const Box& box) {
   return placement;
 }
 
-/// Why a box would be filled for nothing: of so many voxels nearly none is active, as where one
-/// stands far from the others in a damaged file. Empty where it would not.
+/// Says why a box would be filled for nothing: of so many voxels nearly none is active, as where
+/// one stands far from the others in a damaged file. Empty where it would not.
 std::string why_too_sparse(const openvdb::GridBase& grid, const Box& box) {
   constexpr double many = 0x1p28, most_per_active = 1000;
   double voxels = 1;
@@ -113,7 +114,7 @@ std::string why_too_sparse(const openvdb::GridBase& grid, const Box& box) {
          " active ones; cut off those that are far from the others, or split it";
 }
 
-/// Why a grid is no volume; empty where it is one.
+/// Says why a grid is no volume; empty where it is one.
 std::string refusal(const openvdb::GridBase& grid) {
   if (grid.getGridClass() == openvdb::GRID_LEVEL_SET) {
     return "a level set: distances to a surface, known beside it alone; make a fog volume of it "
@@ -172,13 +173,13 @@ void list_grids(const std::filesystem::path& path, const AxisLetters&, GridConte
   }
 }
 
-/// The last place of the cube of a leaf that a place is in, or that of the box.
+/// Returns the last place of the cube of a leaf that a place is in, or that of the box.
 std::int64_t end_of_leaf(std::int64_t place, std::int64_t last, int side) {
   return std::min(place | (side - 1), last);
 }
 
-/// The numbers `component` of all voxels of the box, x fastest. Where a tree has no leaf, its value
-/// is the same in all of a leaf's cube: boxes may be far larger than what is in them.
+/// Copies the numbers `component` of all voxels of the box, x fastest. Where a tree has no leaf,
+/// its value is the same in all of a leaf's cube: boxes may be far larger than what is in them.
 template <class Grid>
 void copy_box(const Grid& grid, const Box& box, int component, std::span<std::byte> to) {
   using Number = typename openvdb::VecTraits<typename Grid::ValueType>::ElementType;

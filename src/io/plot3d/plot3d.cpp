@@ -46,7 +46,7 @@ class Reader {
 
   bool has(std::uintmax_t bytes) const { return at_ <= size() && size() - at_ >= bytes; }
 
-  /// The caller has asked has().
+  /// Reads an integer. The caller has asked has().
   std::int32_t integer(bool big_endian) {
     std::array<std::byte, 4> bytes{};
     source_.read(at_, bytes);
@@ -151,7 +151,7 @@ const char* real_type(const Layout& layout) {
   return layout.wide ? "f64" : "f32";
 }
 
-/// The corners of the hexahedra whose eight points are all shown.
+/// Adds the hexahedra whose eight points are all shown.
 void add_cells(const Dimensions& d, const DataArray<std::int32_t>& shown, UnstructuredGrid& block,
                std::size_t& hidden) {
   const std::int32_t row = d[0], layer = d[0] * d[1];
@@ -242,7 +242,7 @@ void add_derived(const DataArray<Value>& q, UnstructuredGrid& block) {
   block.arrays.push_back({"Temperature", Centering::point, 1, std::move(temperature)});
 }
 
-/// The five numbers of a block's points, which lie one behind the other.
+/// Adds the five numbers of a block's points, which lie one behind the other.
 template <class Value>
 void add_solution(const DataArray<Value>& q, UnstructuredGrid& block) {
   const std::size_t n = q.size() / 5;

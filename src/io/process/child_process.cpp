@@ -46,7 +46,7 @@ constexpr unsigned patience = 300;
 constexpr int max_children = 1;
 #endif
 
-/// Memory that two processes see.
+/// Returns memory that two processes see.
 std::shared_ptr<std::byte> shared_memory(std::size_t bytes) {
   // Whoever asks has looked whether there is memory; what stays untouched needs none.
   void* const at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
@@ -111,7 +111,7 @@ std::uintmax_t seconds_for(std::uintmax_t bytes) {
   return std::min(bytes / bytes_per_second, most);
 }
 
-/// The hard limit stays, so that an answer can ask for more.
+/// Limits the seconds of a processor. The hard limit stays, so that an answer can ask for more.
 void limit_seconds(std::uintmax_t seconds) {
   rlimit processor{};
   getrlimit(RLIMIT_CPU, &processor);
@@ -210,7 +210,7 @@ class GrowingMemory {
   GrowingMemory(const GrowingMemory&) = delete;
   GrowingMemory& operator=(const GrowingMemory&) = delete;
 
-  /// For good: the child ends with it.
+  /// Makes room for good: the child ends with it.
   std::span<std::byte> make(std::size_t bytes) const {
     if (ftruncate(file_, static_cast<off_t>(bytes)) != 0) throw std::bad_alloc();
     if (bytes == 0) return {};

@@ -62,7 +62,7 @@ double sigma_of(std::string_view text, std::string_view number) {
   return sigma;
 }
 
-/// "KIND:CHANNEL" or "smoothed:CHANNEL:SIGMA".
+/// Reads "KIND:CHANNEL" or "smoothed:CHANNEL:SIGMA".
 DerivedSource derived_source(std::string_view text, Kind kind, std::string_view rest) {
   DerivedSource source{kind, std::string(cut(rest, ':')), 0};
   if (source.channel.empty())

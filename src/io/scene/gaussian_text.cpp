@@ -83,7 +83,7 @@ class GaussianReader {
     return value;
   }
 
-  /// "CHANNEL=CENTER~WIDTH" or "CENTER~WIDTH".
+  /// Reads "CHANNEL=CENTER~WIDTH" or "CENTER~WIDTH".
   void read_axis(std::string_view text) {
     const std::size_t equals = text.find('=');
     std::string name;

@@ -69,7 +69,7 @@ Rgb<double> color_from(const std::vector<double>& bytes) {
   return srgb_to_linear(Rgb<double>{bytes[0] / 255, bytes[1] / 255, bytes[2] / 255});
 }
 
-/// A line of ITK-SNAP: IDX R G B A VIS MSH "LABEL".
+/// Reads a line of ITK-SNAP: IDX R G B A VIS MSH "LABEL".
 bool read_snap(const std::vector<std::string>& words, double extinction, LabelStyle& style) {
   if (words.size() != 8 || words[7].front() != '"') return false;
   const auto color = numbers_of(words, 1, 3, 255), rest = numbers_of(words, 4, 3, 1);
@@ -80,7 +80,7 @@ bool read_snap(const std::vector<std::string>& words, double extinction, LabelSt
   return true;
 }
 
-/// A line of 3D Slicer: number, name, R G B A; names have _ in place of spaces.
+/// Reads a line of 3D Slicer: number, name, R G B A; names have _ in place of spaces.
 bool read_slicer(const std::vector<std::string>& words, double extinction, LabelStyle& style) {
   if (words.size() != 6) return false;
   const auto numbers = numbers_of(words, 2, 4, 255);

@@ -12,7 +12,7 @@ namespace pellucid {
 
 namespace {
 
-/// The C of "ARRAY:C", which is taken off.
+/// Returns the C of "ARRAY:C", which is taken off.
 std::optional<int> take_number_behind(std::string_view& text) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string_view::npos) return std::nullopt;

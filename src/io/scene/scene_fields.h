@@ -25,7 +25,7 @@ namespace pellucid::scene_fields {
 /// Name of a field, in JSON and in Python.
 struct Key {
   Key(const char* text) : name(text) {}  // NOLINT: a text is a key
-  /// `missing` says in messages what to give; not null: JSON must have the key.
+  /// Names a key. `missing` says in messages what to give; not null: JSON must have the key.
   Key(const char* text, const char* missing, bool in_json = true)
       : name(text), hint(missing), applies(in_json) {}
 

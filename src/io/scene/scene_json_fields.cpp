@@ -115,7 +115,7 @@ FieldSource file_source(const Node& field, const std::filesystem::path& folder) 
   return source;
 }
 
-/// `more` are the keys that may stand beside those of the field.
+/// Reads a field among other keys. `more` are the keys that may stand beside those of the field.
 FieldSource field_among(const Node& node, const std::filesystem::path& folder,
                         const std::vector<std::string_view>& more) {
   const bool file = node.has("file");

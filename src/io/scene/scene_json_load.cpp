@@ -146,8 +146,8 @@ Look chosen_look(const Data& data, const LayerDescription& description) {
   return look;
 }
 
-/// Whose function is of one variable or of several. `look` becomes the layer's look, if it takes
-/// one.
+/// Loads a mesh, whose function is of one variable or of several. `look` becomes the layer's look,
+/// if it takes one.
 MeshContent load_mesh_content(const LayerDescription& description, const FitTarget& target,
                               const Layer* loaded, const ParallelFor& parallel,
                               MeshSource& mesh_used, std::optional<Look>& look) {
@@ -180,7 +180,7 @@ MeshContent load_mesh_content(const LayerDescription& description, const FitTarg
   return content;
 }
 
-/// `look` becomes the layer's look, if it takes one.
+/// Loads a volume. `look` becomes the layer's look, if it takes one.
 VolumeContent load_volume_content(const LayerDescription& description, const FitTarget& target,
                                   const Layer* loaded, std::optional<Look>& look) {
   VolumeContent content;
@@ -309,7 +309,8 @@ class LookLoader {
            (mesh != nullptr && mesh->univariate() != nullptr);
   }
 
-  /// A preset is made for good; an opacity table stays as it is written.
+  /// Makes the colors of a surface or a slice. A preset is made for good; an opacity table stays as
+  /// it is written.
   template <class Surface>
   void make_colors(Surface& surface, int channel) const {
     const auto make = [&](const auto& data) {

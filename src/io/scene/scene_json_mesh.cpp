@@ -10,7 +10,8 @@ namespace {
 
 constexpr long long largest_component = 1 << 20;
 
-/// "array" and "component" of an object, and the name that it gives or that follows from them.
+/// Reads "array" and "component" of an object, and the name that it gives or that follows from
+/// them.
 MeshArrayChoice array_choice(const Node& node) {
   MeshArrayChoice choice;
   const Node array = node.at("array", "give the name of an array of the mesh");

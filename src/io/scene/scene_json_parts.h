@@ -32,7 +32,7 @@ auto checked(const Node& node, const Make& make) {
 }
 /// Returns the elements of an array of three.
 std::array<Node, 3> three(const Node& node);
-/// [x, y, z].
+/// Reads [x, y, z].
 Vec3<double> vector(const Node& node);
 /// Reads [x, y, z] of a length above 0. Throws Error at the node, as all of these do.
 Vec3<double> direction(const Node& node);
@@ -56,7 +56,7 @@ std::vector<ChannelSource> channel_sources(const Node& list, const std::filesyst
 LabelSource label_source(const Node& labels, const std::filesystem::path& folder);
 MaskSource mask_source(const Node& mask, const std::filesystem::path& folder);
 std::vector<Clip> clips(const Node& list);
-/// Three rows of an affine map.
+/// Reads three rows of an affine map.
 Affine<double> affine_map(const Node& rows);
 MeshSource mesh_source(const Node& mesh, const std::filesystem::path& folder);
 /// Returns a path that is not empty.
@@ -64,7 +64,7 @@ std::filesystem::path file_path(const Node& file, const std::filesystem::path& f
 
 /// Returns whether the colors of a transfer function are sRGB signals: its "color_space".
 bool is_srgb(const Node& function);
-/// [r, g, b] as linear light: 0 or more, or of sRGB 0 to 1.
+/// Reads [r, g, b] as linear light: 0 or more, or of sRGB 0 to 1.
 Rgb<double> color_of(const Node& node, bool srgb);
 /// Returns the points of a piecewise-linear function; at least one.
 std::vector<TransferFunction::Point> extinction_points(const Node& list, bool srgb);
@@ -76,7 +76,7 @@ TransferFunctionDescription transfer_function(const Node& function);
 /// `written`.
 void read_colors(const Node& node, std::shared_ptr<const TransferFunction>& colors,
                  std::shared_ptr<const TransferFunctionDescription>& written);
-/// The names of channels that it uses are not looked up.
+/// Reads a function of several variables. The names of channels that it uses are not looked up.
 MultivariateDescription multivariate(const Node& function);
 
 /// Returns the layer's function of several channels; null: it has none.
@@ -85,10 +85,11 @@ const MultivariateDescription* multivariate_of(const LayerDescription& layer);
 Camera camera(const Node& node, ImageSize size = {});
 Animation animation(const Node& node);
 std::vector<Light> lights(const Node& list);
-/// The names of channels that these use are not looked up.
+/// Read shading and gradient opacity. The names of channels that these use are not looked up.
 Shading shading(const Node& node);
 std::shared_ptr<const GradientOpacity> gradient_opacity(const Node& node);
-/// Shading, gradient opacity, isosurfaces and slices of a layer that has all its other members.
+/// Reads shading, gradient opacity, isosurfaces and slices of a layer that has all its other
+/// members.
 void read_look(const Node& node, LayerDescription& layer);
 
 }  // namespace pellucid::scene_json

@@ -97,7 +97,7 @@ class Members {
   std::string indent_, first_ = "{", next_ = ", ", end_ = "}", text_;
 };
 
-/// One point of a transfer function per line. `strength` is "extinction" or "opacity".
+/// Writes one point of a transfer function per line. `strength` is "extinction" or "opacity".
 template <class Point>
 std::string points_text(const std::vector<Point>& points, double Point::*strength,
                         std::string_view name, const std::string& indent) {
@@ -186,7 +186,7 @@ std::string table_text(const ChannelTransferFunction& table, const std::string& 
   return members.object();
 }
 
-/// One point per line.
+/// Writes one point per line.
 std::string factor_text(const ChannelTransferFunction& factor, const std::string& indent) {
   Members members(indent);
   add_channel("channel", factor.channel, members);
@@ -198,7 +198,7 @@ std::string factor_text(const ChannelTransferFunction& factor, const std::string
   return members.object();
 }
 
-/// One Gaussian per line.
+/// Writes one Gaussian per line.
 std::string transfer_function_text(const MultivariateDescription& function,
                                    const std::string& indent) {
   Members members(indent);
@@ -335,7 +335,7 @@ std::string array_choice_text(const MeshArrayChoice& choice) {
   return text + "}";
 }
 
-/// One channel per line.
+/// Writes one channel per line.
 std::string mesh_text(const MeshSource& mesh, const std::string& indent) {
   Members members(indent);
   members.add("file", path_text(mesh.file, "the path of the mesh"));
@@ -347,7 +347,7 @@ std::string mesh_text(const MeshSource& mesh, const std::string& indent) {
   return members.object();
 }
 
-/// One label per line.
+/// Writes one label per line.
 std::string labels_text(const LabelSource& labels, const std::string& indent) {
   Members members(indent);
   add_field(labels.field, members);
@@ -412,7 +412,7 @@ std::string lights_text(const std::vector<Light>& lights) {
   return lights.empty() ? "[]" : lines_of(lights, "", light_text);
 }
 
-/// One point per line.
+/// Writes one point per line.
 std::string gradient_opacity_text(const GradientOpacity& opacity, const std::string& indent) {
   Members members(indent);
   members.add("points", lines_of(opacity.points(), indent, [](const GradientOpacity::Point& point) {
@@ -424,7 +424,7 @@ std::string gradient_opacity_text(const GradientOpacity& opacity, const std::str
   return members.object();
 }
 
-/// `indent` is that of the keys.
+/// Adds the look of a layer. `indent` is that of the keys.
 void add_look(LayerDescription layer, const std::string& indent, Members& members) {
   name_channels(layer);
   if (layer.shading) members.add("shading", lines_text(*layer.shading, indent));

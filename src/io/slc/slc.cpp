@@ -67,7 +67,7 @@ class Cursor {
     return value;
   }
 
-  /// The X in front of bytes.
+  /// Reads the X in front of bytes.
   void expect_x() {
     if (ended_by_x_) return;
     char c = static_cast<char>(next());

@@ -36,7 +36,7 @@ class PageReader {
   virtual PageFormat format() const = 0;
   /// Returns the file's description of its pages. The first one is the present one. Throws Error.
   virtual PageDescription describe(const ReadOptions& options) const;
-  /// The number of the page among the file's directories, which may have others between.
+  /// Returns the number of the page among the file's directories, which may have others between.
   virtual std::int64_t directory() const { return 0; }
   /// Returns the page's text on its own position (Micro-Manager); empty: none.
   virtual std::string metadata() const { return {}; }
@@ -45,19 +45,20 @@ class PageReader {
   virtual void share_first_page(std::int64_t planes);
   /// Returns the marks of the page beside its values, in an order that is the same for all pages.
   virtual std::vector<PageMark> marks() const { return {}; }
-  /// All values of the page, in this machine's byte order, row by row. Throws Error.
+  /// Reads all values of the page, in this machine's byte order, row by row. Throws Error.
   virtual void read(std::span<std::byte> to) = 0;
   /// Goes on; false where there is no further page. Throws Error.
   virtual bool next() = 0;
 };
 
-/// By extension: .tif and .tiff through libtiff, .png through libpng. Throws Error.
+/// Opens a file by its extension: .tif and .tiff through libtiff, .png through libpng. Throws
+/// Error.
 std::unique_ptr<PageReader> open_pages(const std::filesystem::path& file);
 
 std::unique_ptr<PageReader> open_tiff(const std::filesystem::path& file);
 std::unique_ptr<PageReader> open_png(const std::filesystem::path& file);
 
-/// "300 x 200 of u8", "300 x 200 of 3 x u8".
+/// Returns "300 x 200 of u8", "300 x 200 of 3 x u8".
 std::string page_text(const PageFormat& format);
 
 }  // namespace pellucid

@@ -55,7 +55,7 @@ bool is_stack_pattern(const fs::path& path) {
   return is_image(name) && conversions > 0 && !fs::exists(path, error);
 }
 
-/// Hidden files of a folder are of no stack.
+/// Returns whether a name is that of an image which is not hidden: hidden files are of no stack.
 bool is_shown_image(const std::string& name) {
   return is_image(name) && !name.starts_with('.');
 }
@@ -152,7 +152,7 @@ class Finder {
     }
   }
 
-  /// OME-XML in a file of its own: opens the first file that it names, which must name it.
+  /// Takes OME-XML in a file of its own: opens the first file that it names, which must name it.
   void of_companion() {
     constexpr std::size_t largest = std::size_t{1} << 28;
     const OmeDocument document = read_ome_xml(read_text_file(path_, largest), 1, name_);
@@ -199,7 +199,7 @@ class Finder {
     describe();
   }
 
-  /// A file that has no others beside it.
+  /// Takes a file that has no others beside it.
   void of_alone(const fs::path& file) {
     open_first(file);
     if (stack_.volume.files.front().directories.size() == 1 && !names_other_files()) {
@@ -350,7 +350,7 @@ class Finder {
         options_.note, name_);
   }
 
-  /// Files of one page each.
+  /// Takes files of one page each.
   void of_numbered(const std::vector<NumberedFile>& numbered) {
     const std::vector<fs::path> files = in_order(numbered, name_);
     open_first(files.front());
@@ -443,10 +443,10 @@ void PageReader::share_first_page(std::int64_t) {
 
 namespace {
 
-/// A stack of images (.tif, .tiff, .png): a file of several pages; numbered files, by any of them,
-/// by a pattern or by the folder that holds them and no other images. All are of one size and type,
-/// and their numbers go up in equal steps. Samples are components. Distances are those of the file
-/// where it states a unit, else 1.
+/// Opens a stack of images (.tif, .tiff, .png): a file of several pages; numbered files, by any of
+/// them, by a pattern or by the folder that holds them and no other images. All are of one size and
+/// type, and their numbers go up in equal steps. Samples are components. Distances are those of the
+/// file where it states a unit, else 1.
 VolumeFile open_stack(const fs::path& path, const ReadOptions& options) {
   const std::string name = path.string();
   refuse_raw_options(options, name);

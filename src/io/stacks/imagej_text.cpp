@@ -52,7 +52,7 @@ std::optional<double> number_of(const Lines& lines, std::string_view key) {
   return number_in(word_of(lines, key));
 }
 
-/// The count that a key says, at least 1. Throws Error for what is none.
+/// Returns the count that a key says, at least 1. Throws Error for what is none.
 std::optional<std::int64_t> count_in(const std::string& word, std::string_view key,
                                      const std::string& name) {
   if (word.empty()) return std::nullopt;
@@ -93,7 +93,7 @@ void add_axis(PageDescription& said, char letter, std::int64_t count, const std:
   said.axes.push_back({letter, count});
 }
 
-/// SCIFIO's lists; whether there are some.
+/// Reads SCIFIO's lists, and returns whether there are some.
 bool read_axes(const Lines& lines, const DescribedPage& page, PageDescription& said,
                const std::string& name) {
   const std::vector<std::string> axes = list_of(word_of(lines, "axes")),

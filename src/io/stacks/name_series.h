@@ -26,7 +26,7 @@ std::vector<NameSeries> name_series(const std::vector<std::filesystem::path>& fi
 std::vector<NameSeries> name_series_of(const std::filesystem::path& file,
                                        const std::vector<std::filesystem::path>& files);
 
-/// "S_z%02d_ch00.tif (6 files), …" for messages.
+/// Returns "S_z%02d_ch00.tif (6 files), …" for messages.
 std::string series_text(const std::vector<NameSeries>& series);
 
 }  // namespace pellucid

@@ -20,7 +20,7 @@ std::string pages_text(std::int64_t pages) {
   return std::to_string(pages) + (pages == 1 ? " page" : " pages");
 }
 
-/// "6 slices of 2 channels"
+/// Returns "6 slices of 2 channels".
 std::string axes_text(const std::vector<PageAxis>& axes) {
   std::string text;
   for (const PageAxis& axis : axes) {

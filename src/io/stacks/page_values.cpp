@@ -84,7 +84,7 @@ class Pages {
   std::uint32_t page_ = 0;
 };
 
-/// One sample of a page of several.
+/// Takes one sample of a page of several.
 void take_sample(std::span<const std::byte> page, std::size_t samples, std::size_t sample,
                  std::size_t size, std::span<std::byte> to) {
   const std::size_t count = to.size() / size;
@@ -93,7 +93,7 @@ void take_sample(std::span<const std::byte> page, std::size_t samples, std::size
   }
 }
 
-/// One sample of a page, calibrated.
+/// Calibrates one sample of a page.
 void calibrate(std::span<const std::byte> page, const PageFormat& format, std::size_t sample,
                const ValueCalibration& by, VolumeData& to, std::size_t begin, std::size_t count) {
   const auto samples = static_cast<std::size_t>(format.samples);

@@ -151,7 +151,7 @@ void read_distances(const Node& root, const DescribedPage& page, PageDescription
   said.time_step = number("finterval");
 }
 
-/// "shape=(6,5,4)" as JSON.
+/// Returns "shape=(6,5,4)" as JSON.
 std::string as_json(std::string_view text) {
   if (!text.starts_with("shape=(")) return std::string(text);
   std::string list(text.substr(

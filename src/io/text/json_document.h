@@ -35,7 +35,7 @@ class Node {
 
   /// Throws Error: "name: pointer: what".
   [[noreturn]] void fail(const std::string& what) const;
-  /// The same about a key of this object, whether it is there or not.
+  /// Fails likewise about a key of this object, whether it is there or not.
   [[noreturn]] void fail_at(std::string_view key, const std::string& what) const;
 
   /// Fails unless this is an object that has no keys but these.
@@ -46,12 +46,12 @@ class Node {
   bool is_number() const noexcept;
   bool is_null() const noexcept;
   const nlohmann::json& value() const noexcept { return *value_; }
-  /// true, or a number that is not 0, as other programs write it.
+  /// Returns whether this is true, or a number that is not 0, as other programs write it.
   bool is_true() const;
   bool has(std::string_view key) const;
   /// Returns the value of a key of this object; none where it is absent.
   std::optional<Node> find(std::string_view key) const;
-  /// The same, but fails with the hint where it is absent.
+  /// Returns the same, but fails with the hint where it is absent.
   Node at(std::string_view key, const std::string& hint) const;
 
   /// Fails unless this is an array; its length, and its elements.

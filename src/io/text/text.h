@@ -11,7 +11,7 @@
 
 namespace pellucid {
 
-/// ASCII alone, whatever the locale says.
+/// Returns a text in small letters: ASCII alone, whatever the locale says.
 inline std::string in_small_letters(std::string_view text) {
   std::string small(text);
   std::ranges::transform(small, small.begin(), [](char c) {
@@ -20,14 +20,15 @@ inline std::string in_small_letters(std::string_view text) {
   return small;
 }
 
-/// Without these at its beginning and its end.
+/// Returns a text without these at its beginning and its end.
 inline std::string_view trimmed(std::string_view text, std::string_view blanks = " \t\r") {
   const std::size_t begin = text.find_first_not_of(blanks);
   if (begin == std::string_view::npos) return {};
   return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
 }
 
-/// With blanks in place of control characters, which names and messages of files may have.
+/// Returns a text with blanks in place of control characters, which names and messages of files may
+/// have.
 inline std::string one_line(std::string text) {
   std::ranges::replace_if(
       text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }, ' ');

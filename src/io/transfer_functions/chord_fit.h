@@ -64,7 +64,7 @@ class ChordFit {
     push(point(last, curves_.place(std::nextafter(last, infinity))));
     return std::move(points_);
   }
-  /// Bounds on what the chords are off by: 0 where all of them are exact.
+  /// Return bounds on what the chords are off by: 0 where all of them are exact.
   double color_deviation() const { return color_deviation_; }
   double depth_deviation() const { return depth_deviation_; }
 

@@ -43,7 +43,7 @@ inline Jet mix(double a, double b, const Jet& share) {
   return Jet(a) + Jet(b - a) * share;
 }
 
-/// IEC 61966-2-1, and back with the threshold of vtkMath.
+/// Converts by IEC 61966-2-1, and back with the threshold of vtkMath.
 template <class T>
 T light_of(const T& signal) {
   return branch(
@@ -108,7 +108,7 @@ inline double largest_value(const Jet& x) {
   return x.value.upper;
 }
 
-/// From linear light to the color that is asked for. What is out of gamut is handled as
+/// Converts linear light to the color that is asked for. What is out of gamut is handled as
 /// vtkMath::XYZToRGB does: signals are divided by the largest of them where that exceeds 1, and
 /// negative ones are 0.
 template <class T>

@@ -63,7 +63,7 @@ Function read_vtk_js(const Node& document) {
 
 namespace {
 
-/// The nodes' values: given as shares of the range, or evenly over it.
+/// Returns the nodes' values: given as shares of the range, or evenly over it.
 std::vector<double> positions(const Node& document, const char* key, std::size_t count,
                               const Function& function) {
   std::vector<double> values;

@@ -65,8 +65,8 @@ class Curves {
  public:
   explicit Curves(const Function& function);
 
-  /// Ascending, each once; between two neighbours color and opacity are smooth, but for kinks of
-  /// Jet::larger().
+  /// Returns where pieces meet, ascending, each once; between two neighbours color and opacity are
+  /// smooth, but for kinks of Jet::larger().
   const std::vector<double>& breaks() const noexcept { return breaks_; }
   Place place(double inside) const;
   template <class T>

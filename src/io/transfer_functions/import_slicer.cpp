@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* format = "3D Slicer volume property";
 
-/// Midpoint and sharpness of a node, which may be absent.
+/// Reads midpoint and sharpness of a node, which may be absent.
 template <class To>
 void read_shape(const Node& point, To& node) {
   if (const auto midpoint = point.find("midpoint")) node.midpoint = share(*midpoint);
@@ -45,7 +45,7 @@ std::vector<ColorNode> colors(const Node& function) {
 constexpr double largest_strength = 1e3;
 constexpr double largest_power = 1e6;
 
-/// vtkVolumeProperty's defaults.
+/// Returns vtkVolumeProperty's defaults.
 Shading vtk_shading() {
   Shading shading;
   shading.ambient = 0.1;

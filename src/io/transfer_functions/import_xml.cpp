@@ -47,7 +47,8 @@ void note_once(Function& function, const std::string& note) {
   }
 }
 
-/// <ColorMap name="" space=""><Point x="" o="" r="" g="" b=""/>…</ColorMap>; ParaView ignores o.
+/// Reads <ColorMap name="" space=""><Point x="" o="" r="" g="" b=""/>…</ColorMap>; ParaView ignores
+/// o.
 Function read_color_maps(Scanner& scanner, Tag tag, const std::string& name,
                          const std::string& wanted) {
   Function function;
@@ -153,7 +154,7 @@ void visit_setting(Function& function, std::string_view key, std::string_view te
   }
 }
 
-/// <Object name="GaussianControlPoint"><Field name="x" type="float">0.3</Field>…</Object>.
+/// Reads <Object name="GaussianControlPoint"><Field name="x" type="float">0.3</Field>…</Object>.
 Function read_visit(Scanner& scanner, Tag tag, const std::string& name) {
   Function function;
   function.format = "VisIt volume attributes";

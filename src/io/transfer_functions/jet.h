@@ -33,7 +33,7 @@ inline Range operator+(Range a, Range b) {
 inline Range operator-(Range a, Range b) {
   return {a.lower - b.upper, a.upper - b.lower};
 }
-/// 0 · ∞ counts as 0: an infinite bound stands for "unknown, but finite".
+/// Returns a b; 0 · ∞ counts as 0: an infinite bound stands for "unknown, but finite".
 inline double times(double a, double b) {
   return a == 0 || b == 0 ? 0 : a * b;
 }
@@ -42,7 +42,7 @@ inline Range operator*(Range a, Range b) {
                r = times(a.upper, b.lower), s = times(a.upper, b.upper);
   return {std::min({p, q, r, s}), std::max({p, q, r, s})};
 }
-/// x^p of x >= 0.
+/// Returns x^p of x >= 0.
 inline Range power(Range x, double p) {
   const double a = std::pow(std::max(x.lower, 0.0), p), b = std::pow(std::max(x.upper, 0.0), p);
   return {std::min(a, b), std::max(a, b)};
@@ -70,12 +70,12 @@ inline Jet operator*(const Jet& a, const Jet& b) {
   return {a.value * b.value, a.value * b.first + a.first * b.value,
           a.value * b.second + Range(2) * (a.first * b.first) + a.second * b.value};
 }
-/// f(x) by the ranges of f, f' and f'' over the value of x.
+/// Returns f(x) by the ranges of f, f' and f'' over the value of x.
 inline Jet compose(const Jet& x, Range f, Range df, Range ddf) {
   return {f, df * x.first, ddf * (x.first * x.first) + df * x.second};
 }
 
-/// x^p of x >= 0; what is below counts as 0.
+/// Returns x^p of x >= 0; what is below counts as 0.
 inline Jet power(const Jet& x, double p) {
   const Range v{std::max(x.value.lower, 0.0), std::max(x.value.upper, 0.0)};
   return compose(x, power(v, p), Range(p) * power(v, p - 1), Range(p * (p - 1)) * power(v, p - 2));
@@ -84,7 +84,7 @@ inline double power(double x, double p) {
   return std::pow(std::max(x, 0.0), p);
 }
 
-/// ln x of x > 0.
+/// Returns ln x of x > 0.
 inline Jet logarithm(const Jet& x) {
   const Range v = x.value, inverse{1 / v.upper, 1 / v.lower};
   return compose(x, {std::log(v.lower), std::log(v.upper)}, inverse,
@@ -119,7 +119,7 @@ inline double sine(double x) {
   return std::sin(x);
 }
 
-/// e^x.
+/// Returns e^x.
 inline Jet exponential(const Jet& x) {
   const Range e{std::exp(x.value.lower), std::exp(x.value.upper)};
   return compose(x, e, e, e);
@@ -143,7 +143,7 @@ T smaller(const T& a, const T& b) {
   return T(0) - larger(T(0) - a, T(0) - b);
 }
 
-/// 1/x of x >= 1.
+/// Returns 1/x of x >= 1.
 inline Jet reciprocal(const Jet& x) {
   return compose(x, power(x.value, -1), Range(-1) * power(x.value, -2),
                  Range(2) * power(x.value, -3));
@@ -152,7 +152,7 @@ inline double reciprocal(double x) {
   return 1 / x;
 }
 
-/// low(x) up to the threshold and high(x) above it, which are to meet there.
+/// Returns low(x) up to the threshold and high(x) above it, which are to meet there.
 template <class Low, class High>
 double branch(double x, double threshold, Low&& low, High&& high) {
   return x <= threshold ? low(x) : high(x);

@@ -14,7 +14,7 @@
 namespace pellucid {
 namespace {
 
-/// Linear light of each stored signal.
+/// Returns the linear light of each stored signal.
 std::vector<float> light_of_signals(double largest) {
   std::vector<float> light(static_cast<std::size_t>(largest) + 1);
   for (std::size_t i = 0; i < light.size(); ++i) {

@@ -24,7 +24,7 @@ struct GridPart {
   IndexBox box;
 };
 
-/// The number of values of a box.
+/// Returns the number of values of a box.
 inline std::size_t value_count(const IndexBox& box) noexcept {
   std::size_t count = 1;
   for (const int side : box.count) count *= static_cast<std::size_t>(side);
@@ -61,28 +61,29 @@ struct VolumeFile {
   std::function<std::vector<VolumeData>(ComponentRange)> read;
 };
 
-/// The one volume that the options choose, or that there is. Throws Error where the file has
+/// Reads the one volume that the options choose, or that there is. Throws Error where the file has
 /// several and none is chosen, or the chosen one is not there.
 Volume read_chosen(const VolumeFile& file, const ReadOptions& options);
-/// All of them, or the chosen one alone.
+/// Reads all of them, or the chosen one alone.
 std::vector<Volume> read_all(const VolumeFile& file, const ReadOptions& options);
 
 /// Fills a span with the bytes that come next.
 using ReadOn = std::function<void(std::span<std::byte>)>;
-/// From this byte of the source on, which must hold what is asked for and outlive the function.
+/// Returns what reads from this byte of the source on, which must hold what is asked for and
+/// outlive the function.
 ReadOn read_on(const ByteSource& source, std::uintmax_t from);
 
-/// The number of values of all components. Throws Error where no machine holds so many.
+/// Returns the number of values of all components. Throws Error where no machine holds so many.
 std::size_t value_count(std::size_t points, int components, const std::string& name);
 
 /// Returns whether the next function reads a part of a grid without the rest.
 bool reads_parts(const ValueLayout& layout);
-/// Each component of `points` values, as ValueLayout says how they lie; those that lie as in memory
-/// in place. The source must hold all components.
+/// Reads each component of `points` values, as ValueLayout says how they lie; those that lie as in
+/// memory in place. The source must hold all components.
 std::vector<VolumeData> read_components(const ByteSource& source, const ValueLayout& layout,
                                         std::size_t points, ComponentRange range);
-/// The same from a stream that stands at the first value of the first component. Reads on to the
-/// end of the last, so that a stream that is cut off is found out.
+/// Reads the same from a stream that stands at the first value of the first component. Reads on to
+/// the end of the last, so that a stream that is cut off is found out.
 std::vector<VolumeData> read_components(DataStream& stream, const ValueLayout& layout,
                                         std::size_t points, ComponentRange range);
 

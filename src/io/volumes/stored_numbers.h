@@ -36,19 +36,20 @@ struct Rounding {
   std::uint64_t largest = 0;  ///< largest difference between a number and its double
 
   void merge(const Rounding& other) noexcept;
-  /// "2 of 60 whole numbers of 64 bits do not fit double and are rounded, by at most 512".
+  /// Says "2 of 60 whole numbers of 64 bits do not fit double and are rounded, by at most 512".
   std::string text(std::size_t of) const;
 };
 
 /// Collects whole numbers of 64 bits, part by part, in the smallest type that holds them.
 class WholeNumbers {
  public:
-  /// `make` makes room for all of them, again whenever a wider type is needed.
+  /// Holds no numbers yet. `make` makes room for all of them, again whenever a wider type is
+  /// needed.
   explicit WholeNumbers(MakeValues make);
 
   using Signed = std::int64_t;
   using Unsigned = std::uint64_t;
-  /// The next ones, for which there must be room.
+  /// Adds the next ones, for which there must be room.
   void add(std::span<const Signed> numbers);
   void add(std::span<const Unsigned> numbers);
 
@@ -75,7 +76,7 @@ class WholeNumbers {
 /// Gives components of one file one type.
 void unify(std::span<WholeNumbers> components);
 
-/// IEEE 754 binary16, every value exactly: subnormals, infinities and NaN as well.
+/// Converts IEEE 754 binary16, every value exactly: subnormals, infinities and NaN as well.
 float half_to_float(std::uint16_t bits) noexcept;
 
 }  // namespace pellucid

@@ -26,7 +26,7 @@ struct ByteSource {
 
 /// Returns a regular file. Throws Error where it cannot be read.
 ByteSource file_source(const std::filesystem::path& path);
-/// `bytes` must outlive the source.
+/// Returns a source of bytes in memory, which must outlive it.
 ByteSource memory_source(std::span<const std::byte> bytes, std::string name);
 
 /// Is told a line that a user should know.
@@ -45,20 +45,21 @@ struct ValueLayout {
 /// Returns the number of values of a grid. Throws Error where a side is not positive or the product
 /// is too large for any machine.
 std::size_t value_count(const std::array<std::int64_t, 3>& dimensions, const std::string& name);
-/// 1, 2, 4 or 8 bytes, also of types that only files have. Throws Error for a name that is no type.
+/// Returns 1, 2, 4 or 8 bytes, also of types that only files have. Throws Error for a name that is
+/// no type.
 std::size_t value_size(const std::string& type, const std::string& name);
 
 /// Throws Error where the source ends before the last of `count` values, those of all components.
 /// There may be more behind it.
 void check_size(const ByteSource& source, const ValueLayout& layout, std::size_t count);
-/// The same of so many bytes of values from `offset` on.
+/// Checks the same of so many bytes of values from `offset` on.
 void check_bytes(const ByteSource& source, std::uintmax_t offset, std::uintmax_t bytes);
 /// Tells `note` how many bytes of `source` stand behind the values; `advice` is what to do where
 /// they are not the first bytes, and may be empty.
 void note_bytes_left_over(const ByteSource& source, std::uintmax_t end, const Note& note,
                           const std::string& advice);
 
-/// Memory for so many values. Throws Error where there is not enough.
+/// Returns memory for so many values. Throws Error where there is not enough.
 VolumeData make_values(const std::string& type, std::size_t count, const std::string& name);
 /// Returns the values, of one component, in their own type: in place where they lie there as in
 /// memory, else read. The source must hold them all.

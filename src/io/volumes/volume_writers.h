@@ -44,12 +44,12 @@ struct VolumeWriter {
 std::span<const VolumeWriter* const> volume_writers();
 
 void put_text(const std::string& text, const Sink& sink);
-/// The components of each point side by side.
+/// Writes the components of each point side by side.
 void put_interleaved(const WrittenVolume& volume, const Sink& sink);
-/// One component behind the other.
+/// Writes one component behind the other.
 void put_one_by_one(const WrittenVolume& volume, const Sink& sink);
 
-/// With as many digits as it takes to read the same number again, and no more.
+/// Writes a number with as many digits as it takes to read the same number again, and no more.
 std::string exact_text(double x);
 std::string exact_text(const Vec3<double>& v, const std::string& separator);
 

@@ -5,8 +5,8 @@
 
 namespace pellucid {
 
-/// Whether a path is a store of Zarr: a folder with .zarray, .zgroup or zarr.json, or one whose
-/// name ends in .zarr; or one of these files.
+/// Returns whether a path is a store of Zarr: a folder with .zarray, .zgroup or zarr.json, or one
+/// whose name ends in .zarr; or one of these files.
 bool is_zarr(const std::filesystem::path& path);
 
 }  // namespace pellucid
