@@ -28,7 +28,7 @@ struct ExportArguments {
   bool reduces = false;
 };
 
-/// "20M": a number of bytes, or of so many thousands of them.
+/// Reads "20M": a number of bytes, or of so many thousands of them.
 double parse_byte_count(const std::string& option, const std::string& text) {
   double number = 0;
   const char* const end = text.data() + text.size();
@@ -59,7 +59,8 @@ void check(const ExportArguments& arguments) {
   check_writable(arguments.output);
 }
 
-/// "10:60,0:100,5:25": values from the first number to the one before the second, along x, y, z.
+/// Reads "10:60,0:100,5:25": values from the first number to the one before the second, along x, y,
+/// z.
 IndexBox parse_crop(const std::string& option, const std::string& text) {
   IndexBox box;
   const char* at = text.data();

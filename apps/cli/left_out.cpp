@@ -14,7 +14,7 @@ namespace pellucid {
 namespace cli {
 namespace {
 
-/// A command, the arguments of which are not read.
+/// Adds a command, the arguments of which are not read.
 Command add_left_out(CommandLine& app, const char* name) {
   CommandLine& command = *app.add_subcommand(name, "Is not in this program yet");
   command.take_any_arguments();

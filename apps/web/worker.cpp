@@ -143,7 +143,7 @@ class WorkerViewer {
     show(view_input(input, parallel_for(1)), folder);
   }
 
-  /// `folder`: where its files are, which a saved scene names by themselves.
+  /// Shows a scene. `folder`: where its files are, which a saved scene names by themselves.
   void show(ViewedScene scene, const std::filesystem::path& folder) {
     SceneState state(std::move(scene.description), std::move(scene.scene), parallel_for(1));
     if (!folder.empty()) state.set_temporary_folder(folder);

@@ -119,8 +119,8 @@ Scene shape_of(const Scene& scene) {
   return shape;
 }
 
-/// The picture as the display takes it: premultiplied 15 bits, row 0 at the bottom, each pixel
-/// twice along each axis.
+/// Returns the picture as the display takes it: premultiplied 15 bits, row 0 at the bottom, each
+/// pixel twice along each axis.
 ///
 /// The display stretches a picture of n texels so that the middles of the outermost texels lie at
 /// the edges of the viewport, and filters it: pixels of one texel each would be moved by up to half

@@ -28,7 +28,7 @@ class HasCore {
   MapperCore core;
 };
 
-/// VTK before 9.2 has no such shadows.
+/// Notes that shadows are left out; VTK before 9.2 has none.
 template <class Mapper>
 void say_shadows_are_left_out(Mapper& mapper, Notes& notes) {
   if constexpr (requires { mapper.GetVolumetricScatteringBlending(); }) {

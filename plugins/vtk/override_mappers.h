@@ -12,8 +12,8 @@ namespace pellucid::plugin {
 
 class MapperCore;
 
-/// Mappers of this plug-in that are mappers of VTK's classes, for programs that ask for these: they
-/// have all of their functions, and draw as vtkPellucidVolumeMapper and
+/// Make mappers of this plug-in that are mappers of VTK's classes, for programs that ask for these:
+/// they have all of their functions, and draw as vtkPellucidVolumeMapper and
 /// vtkPellucidUnstructuredGridMapper do. What says how VTK's own sample has no effect. The caller
 /// owns what is returned.
 vtkGPUVolumeRayCastMapper* new_gpu_override();

@@ -45,7 +45,7 @@ class ReleasedLock {
   PyThreadState* state_;
 };
 
-/// Each adds its classes and functions to the compiled part of the package, `pellucid._pellucid`.
+/// Add classes and functions to the compiled part of the package, `pellucid._pellucid`.
 void bind_axes(py::module_& module);
 void bind_volumes(py::module_& module);
 void bind_labels(py::module_& module);
@@ -100,7 +100,8 @@ py::object array_as(const py::object& array, const py::object& dtype, const py::
 class Notes {
  public:
   void operator()(const std::string& text) { texts_.push_back(text); }
-  /// Warns of each note once, as pellucid.Note. Throws what a warning turned into an error throws.
+  /// Tells each note once, as a warning, as pellucid.Note. Throws what a warning turned into an
+  /// error throws.
   void warn();
 
  private:

@@ -27,7 +27,7 @@ std::shared_ptr<const TransferFunction> colors_of(const py::object& object,
 /// Reads fields (scene_fields.h) from the attributes of a Python object.
 class FieldReader {
  public:
-  /// `what` and a dot begin the names in messages, unless it is empty.
+  /// Reads fields of an object. `what` and a dot begin the names in messages, unless it is empty.
   FieldReader(const py::handle& object, const std::string& what)
       : object_(object), prefix_(what.empty() ? "" : what + ".") {}
 

@@ -30,7 +30,7 @@ namespace {
 /// Python's Frame: a frame that is being rendered.
 class FrameHandle {
  public:
-  /// `image`: of the scene, without pixels.
+  /// Holds a frame that runs. `image`: of the scene, without pixels.
   FrameHandle(RunningFrame frame, ImageHandle image)
       : frame_(std::make_unique<RunningFrame>(std::move(frame))), empty_(std::move(image)) {}
   FrameHandle(FrameHandle&&) = default;
@@ -158,8 +158,8 @@ void in_a_thread(Body&& body, std::stop_source& stop, Fraction&& fraction,
   if (failure) std::rethrow_exception(failure);
 }
 
-/// At the tolerance that is `share` of the picture's largest channel. Several frames are rendered:
-/// a thread does it, and asks between them and within whether to stop.
+/// Renders at the tolerance that is `share` of the picture's largest channel. Several frames are
+/// rendered: a thread does it, and asks between them and within whether to stop.
 ImageHandle render_share(RendererHandle& handle, const py::object& object, double share, bool depth,
                          bool error, bool values, int threads, const py::object& progress) {
   PythonScene made = complete_python_scene(object);
@@ -206,7 +206,8 @@ ImageHandle render_share(RendererHandle& handle, const py::object& object, doubl
   return result;
 }
 
-/// The reference has no frame to watch: it asks Python itself, from one of its threads.
+/// Renders by the reference, which has no frame to watch: it asks Python itself, from one of its
+/// threads.
 ImageHandle reference_image(const py::object& object, bool depth, int threads,
                             const py::object& progress) {
   const PythonScene made = complete_python_scene(object);

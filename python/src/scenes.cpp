@@ -85,7 +85,7 @@ Slice slice_of(const py::handle& object, const std::string& what) {
   return part_of<Slice>(object, what);
 }
 
-/// Three rows of four numbers, or four as of a 4 x 4 matrix.
+/// Reads three rows of four numbers, or four as of a 4 x 4 matrix.
 Affine<double> transform_of(const py::object& object, const std::string& what) {
   const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(object);
   if (!rows) PyErr_Clear();
@@ -129,7 +129,7 @@ class FunctionReader {
                 short_repr(object_));
   }
 
-  /// `channels`: those of the data.
+  /// Returns the function of several variables. `channels`: those of the data.
   template <class Data>
   std::shared_ptr<const MultivariateTransferFunction> multivariate(
       const Data& channels, LayerDescription& description) const {

@@ -121,7 +121,8 @@ class ViewerHandle {
     wait_until([&] { return !is_running(); }, [] { return 0.0; }, py::none());
   }
 
-  /// Its threads may let go of arrays, for which they need the interpreter's lock.
+  /// Stops the server. Its threads may let go of arrays, for which they need the interpreter's
+  /// lock.
   void stop() {
     const ReleasedLock released;
     server_.end();

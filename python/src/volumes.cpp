@@ -18,7 +18,7 @@ namespace pellucid::python {
 
 namespace {
 
-/// Three numbers in the order of an array's axes, (z, y, x), as x, y, z.
+/// Reads three numbers in the order of an array's axes, (z, y, x), as x, y, z.
 Vec3<double> from_zyx(const py::handle& object, const std::string& what) {
   const Vec3<double> v = vector_of(object, what);
   return {v.z, v.y, v.x};

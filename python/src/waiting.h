@@ -15,8 +15,9 @@ inline void attend(const py::object& progress, double fraction) {
   if (!progress.is_none()) progress(fraction);
 }
 
-/// A thread that asks for the interpreter's lock while the interpreter ends would be ended by it,
-/// which C++ does not survive. It waits for the end of the process here instead.
+/// Waits for ever once the interpreter ends. A thread that asks for its lock while the interpreter
+/// ends would be ended by it, which C++ does not survive. It waits for the end of the process here
+/// instead.
 inline void wait_for_the_end_if_it_has_come() {
   while (is_interpreter_ending()) std::this_thread::sleep_for(std::chrono::seconds(1));
 }

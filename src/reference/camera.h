@@ -11,8 +11,8 @@ class CameraRays {
  public:
   CameraRays(const Camera& camera, ImageSize size);
 
-  /// Sample n of samples × samples, row by row: through the centre of one of the equal parts of the
-  /// pixel (origin of the image at the top left); direction of length 1.
+  /// Returns the ray of sample n of samples × samples, row by row: through the centre of one of the
+  /// equal parts of the pixel (origin of the image at the top left); direction of length 1.
   RealRay ray(int column, int row, int n, int samples) const;
 
  private:

@@ -9,7 +9,7 @@
 namespace pellucid::reference {
 namespace {
 
-/// Corner k stands at the upper end of an axis where its bit is set.
+/// Returns whether corner k stands at the upper end of an axis: where its bit is set.
 bool is_upper(std::size_t k, std::size_t axis) {
   return ((k >> axis) & 1) != 0;
 }
@@ -72,7 +72,7 @@ Real Chord::operator()(Real u) const {
   return std::clamp(sum, lower_, upper_);
 }
 
-/// Taylor's expansion about u_begin, scaled to the part; in extended precision, so that a narrow
+/// Expands after Taylor about u_begin, scaled to the part; in extended precision, so that a narrow
 /// stretch of data far from 0 keeps its digits.
 std::array<Real, 4> Chord::monomial(Real u_begin, Real u_end) const {
   const std::array<Real, 4>& c = monomial_;

@@ -25,7 +25,7 @@ class Chord {
   /// Returns the same as a polynomial in u, lowest power first: the product of the weights
   /// multiplied out.
   const std::array<Real, 4>& monomial() const { return monomial_; }
-  /// On the part [u_begin, u_end], as a polynomial in w from 0 to 1 there.
+  /// Returns the data on the part [u_begin, u_end], as a polynomial in w from 0 to 1 there.
   std::array<Real, 4> monomial(Real u_begin, Real u_end) const;
 
   /// Returns the range of the corners that have a weight anywhere on the chord; encloses the data

@@ -73,7 +73,7 @@ struct Inside {
     const Real radius = sphere.radius;
     return within(from, ray.direction, radius);
   }
-  /// |(p - start) × axis| <= radius |axis|, between the planes of the ends.
+  /// Returns the part where |(p - start) × axis| <= radius |axis|, between the planes of the ends.
   RayPart operator()(const ClipCylinder& cylinder) const {
     const Real3 start = real(cylinder.start), axis = difference(real(cylinder.end), start);
     const Real3 from = difference(ray.origin, start);

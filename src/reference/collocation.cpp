@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t nodes = Collocation::nodes;
 
-/// P_0 … P_nodes at x, by their recurrence.
+/// Returns P_0 … P_nodes at x, by their recurrence.
 std::array<double, nodes + 1> legendre(double x) {
   std::array<double, nodes + 1> p{1, x};
   for (std::size_t k = 1; k < nodes; ++k) {
@@ -20,7 +20,7 @@ std::array<double, nodes + 1> legendre(double x) {
   return p;
 }
 
-/// ∫ P_k from -1 to x, k < nodes: (P_{k+1} - P_{k-1}) / (2k + 1), and 1 + x for k = 0.
+/// Returns ∫ P_k from -1 to x, k < nodes: (P_{k+1} - P_{k-1}) / (2k + 1), and 1 + x for k = 0.
 Collocation::Values legendre_integrals(double x) {
   const std::array<double, nodes + 1> p = legendre(x);
   Collocation::Values result{1 + x};

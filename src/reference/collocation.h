@@ -14,13 +14,13 @@ class Collocation {
 
   static const Collocation& rule();
 
-  /// Ascending.
+  /// Returns the nodes, ascending.
   const Values& node() const { return node_; }
-  /// Over [-1, 1]; exact to degree 39.
+  /// Integrates over [-1, 1]; exact to degree 39.
   double integral(const Values& f) const;
-  /// From -1 to each node: exact to degree 19.
+  /// Integrates from -1 to each node: exact to degree 19.
   Values running_integral(const Values& f) const;
-  /// From -1 to x in [-1, 1].
+  /// Integrates from -1 to x in [-1, 1].
   double running_integral(const Values& f, double x) const;
   /// Returns the sum of the magnitudes of the last three coefficients: small where the polynomial
   /// is the function.

@@ -24,7 +24,7 @@ struct LayerStretch {
 /// Data of one layer along rays. A view of its data, clips and those of the scene.
 class LayerData {
  public:
-  /// The layer is in its place.
+  /// Prepares a layer, which is in its place.
   LayerData(const Layer& layer, const std::vector<Clip>& of_scene);
 
   /// Returns the stretches of a ray at t >= 0 that clips keep, front to back. Adds the number of

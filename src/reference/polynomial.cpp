@@ -35,7 +35,7 @@ Polynomial derivative(const Polynomial& p) {
   return result;
 }
 
-/// Between two zeros of the derivative a polynomial is monotone.
+/// Returns the zeros in an interval. Between two zeros of the derivative a polynomial is monotone.
 std::vector<Real> zeros(Polynomial p, Real lower, Real upper) {
   while (!p.empty() && p.back() == 0) p.pop_back();
   if (p.size() < 2) return {};

@@ -56,7 +56,7 @@ Real top(const Chord& chord, Real sign, Real last) {
   return std::max(best, top_between(chord, sign, from, to));
 }
 
-/// Simpson's rule on [from, to], halved until both halves agree with the whole.
+/// Integrates by Simpson's rule on [from, to], halved until both halves agree with the whole.
 Real integral(const Chord& chord, Real from, Real to, int levels) {
   const Real middle = (from + to) / 2;
   const auto simpson = [&](Real a, Real b) {

@@ -11,7 +11,7 @@ namespace pellucid::reference {
 /// A projected layer: its value along a ray, and the look of that value.
 class Projection {
  public:
-  /// The layer is projected and in its place; it must outlive the object.
+  /// Projects a layer, which is in its place and must outlive the object.
   Projection(const Layer& layer, const std::vector<Clip>& of_scene);
 
   /// Returns the value along a ray with a direction of length 1, up to `end`: NaN without data, but

@@ -24,8 +24,8 @@ class SceneIntegral {
   SceneIntegral(const Volume& volume, const TransferFunction& transfer_function);
   SceneIntegral(const Channels& channels, const MultivariateTransferFunction& transfer_function);
 
-  /// Along a ray with a direction of length 1, up to `end` if the scene has a backdrop. Adds the
-  /// number of cells crossed to `cells`.
+  /// Integrates along a ray with a direction of length 1, up to `end` if the scene has a backdrop.
+  /// Adds the number of cells crossed to `cells`.
   ReferencePixel operator()(const RealRay& ray, bool with_depth, std::uint64_t& cells,
                             Real end = std::numeric_limits<Real>::infinity()) const;
   /// Returns the same with its half-opacity depth. Throws Error for a direction of length 0, and

@@ -74,7 +74,7 @@ class Crossings {
     sign_ = sign;
     return turns;
   }
-  /// Between two points with different signs; data are monotone there.
+  /// Returns the crossing between two points with different signs; data are monotone there.
   Real crossing(const Chord& chord, const Point& from, const Point& to) const {
     std::uintmax_t iterations = 200;
     const auto [left, right] = boost::math::tools::toms748_solve(

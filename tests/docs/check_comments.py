@@ -81,6 +81,8 @@ def found_in(text):
             continue
         if inside:
             inside = False
+            if first in ("@{", "@}"):  # marks of a group, in the manner of VTK
+                continue
             if CLAUSE.match(first):
                 yield "clauses", begin, first
             elif not VERB.match(first) and is_function(declaration(lines, number)):

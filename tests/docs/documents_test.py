@@ -61,6 +61,7 @@ class Comments(Repository):
                       "class Thing : public Base<int> {", "int thing{};"):
             self.assertEqual(self.kinds(f"/// The thing.\n{other}\n"), [], other)
         self.assertEqual(self.kinds("/// Values of it.\nint thing();\n"), ["functions"])
+        self.assertEqual(self.kinds("///@{\n/**\n * The thing.\n */\nint thing();\n///@}\n"), [])
 
     def test_numbers(self):
         self.write("src/a.h", "/// What it is.\nstruct A {};\n")

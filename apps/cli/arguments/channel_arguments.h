@@ -21,7 +21,8 @@ struct ChannelArguments {
   std::string command;  ///< its name, for messages
 
   void add_to(CommandLine& app);
-  /// One volume alone, whose channels have the names that they have in a scene.
+  /// Returns whether the input is one volume alone, whose channels have the names that they have in
+  /// a scene.
   bool is_one_volume() const { return inputs.size() == 1 && channels.empty(); }
   /// Returns the inputs, for messages.
   std::string source_text() const;
@@ -33,12 +34,13 @@ struct ChannelSelection {
   std::vector<std::string> axes;       ///< names, in the order asked for
 };
 
-/// Names of the channels of files: "value" of a single one, else what stands before the first dot
-/// of each file's name, without what no name may hold, and "_2" and so on where that was there.
+/// Returns names of the channels of files: "value" of a single one, else what stands before the
+/// first dot of each file's name, without what no name may hold, and "_2" and so on where that was
+/// there.
 std::vector<std::string> file_channel_names(const std::vector<std::string>& inputs);
 
-/// At most `most` axes. Throws UsageError where there is nothing, a name is not there or stands
-/// twice, or there are more.
+/// Selects at most `most` axes. Throws UsageError where there is nothing, a name is not there or
+/// stands twice, or there are more.
 ChannelSelection select_channels(const ChannelArguments& arguments, int most);
 
 /// The channels, read and made, and the index of each axis in them.

@@ -22,15 +22,15 @@ class Option {
 
   /// Sets the text that help shows as its value: "FILE".
   Option* option_text(const std::string& text);
-  /// The heading that help puts it under.
+  /// Sets the heading that help puts it under.
   Option* group(const std::string& name);
   Option* required();
   /// Sets whether one mention may have several values.
   Option* allow_extra_args(bool allowed);
-  /// Other values than these are wrong arguments.
+  /// Makes other values than these wrong arguments.
   Option* one_of(const std::vector<std::string>& values);
   Option* in_range(int least, int greatest);
-  /// The two cannot be given together.
+  /// Forbids that the two are given together.
   Option* excludes(Option* other);
   Option* excludes(const std::string& name);
 
@@ -45,7 +45,7 @@ class Option {
 /// the parsing.
 class CommandLine {
  public:
-  /// `name` is the program's.
+  /// Begins a command line. `name` is the program's.
   CommandLine(const std::string& description, const std::string& name);
   ~CommandLine();
   CommandLine(const CommandLine&) = delete;

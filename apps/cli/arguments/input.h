@@ -11,7 +11,7 @@
 
 namespace pellucid::cli {
 
-/// Kinds of INPUT, for help texts.
+/// Returns the kinds of INPUT, for help texts.
 std::string input_help();
 
 /// The options that say, or replace, what a volume file says about itself.
@@ -22,7 +22,7 @@ struct VolumeOptions {
   std::optional<int> components, level;
   std::vector<Option*> given;  ///< all of them, to ask which were used
 
-  /// `--array` and `--axes` where no other option of the command has this name.
+  /// Adds the options; `--array` and `--axes` where no other option of the command has this name.
   void add_to(CommandLine& command, bool with_array = true, bool with_axes = true);
   /// Throws UsageError where an option is used, saying that it does not apply to `what`.
   void refuse(const std::string& what) const;

@@ -28,7 +28,7 @@ struct MeshOptions {
   std::vector<std::string> arrays;  ///< [NAME=]ARRAY[:C]
   std::vector<Option*> given;       ///< all of them, to ask which were used
 
-  /// `--array` where the command looks at arrays.
+  /// Adds the options; `--array` where the command looks at arrays.
   void add_to(CommandLine& command, bool with_arrays);
   /// Throws UsageError where an option is used, saying that it does not apply to `what`.
   void refuse(const std::string& what) const;
@@ -38,7 +38,7 @@ struct MeshOptions {
     options.time = time;
     options.time_between = between_steps(time_between, time.has_value() || has_times);
   }
-  /// The same of `--solution` alone: volume files have arrays and times too.
+  /// Throws the same for `--solution` alone: volume files have arrays and times too.
   void refuse_q(const std::string& what) const;
 };
 

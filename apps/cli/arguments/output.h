@@ -15,12 +15,12 @@ using Json = nlohmann::ordered_json;
 void print_text(const std::string& text);
 /// Prints indented JSON, with one line feed at the end. Numbers that are not finite become null.
 void print_json(const Json& json);
-/// "pellucid: …" on stderr; one line.
+/// Prints "pellucid: …" on stderr; one line.
 void print_note(const std::string& text);
 
 Json to_json(const Vec3<double>& v);
 Json dimensions_json(const Volume& volume);
-/// Lower-case extension with its dot: ".png".
+/// Returns the lower-case extension with its dot: ".png".
 std::string extension_of(const std::filesystem::path& path);
 
 }  // namespace pellucid::cli

@@ -28,19 +28,19 @@ class OverTolerance : public Error {
 /// Returns the text as one line that a terminal can show: line breaks and control characters become
 /// spaces.
 std::string one_line(std::string_view text);
-/// ASCII letters only.
+/// Returns the text with small letters; ASCII letters only.
 std::string lower_case(std::string text);
 
-/// Each throws UsageError that names the option and shows what it expects.
+/// Read texts of options. Each throws UsageError that names the option and shows what it expects.
 std::array<double, 3> parse_triple(const std::string& option, const std::string& text);
 std::array<int, 3> parse_dimensions(const std::string& option, const std::string& text);
-/// "640x480", or "512" for a square.
+/// Reads "640x480", or "512" for a square.
 ImageSize parse_size(const std::string& option, const std::string& text);
-/// "256" for each of so many axes, or "256x128" for two; each from 1 to 4096.
+/// Reads "256" for each of so many axes, or "256x128" for two; each from 1 to 4096.
 std::vector<int> parse_bins(const std::string& option, const std::string& text, std::size_t axes);
-/// "LOWER,UPPER": two finite numbers of which the first is the smaller.
+/// Reads "LOWER,UPPER": two finite numbers of which the first is the smaller.
 std::array<double, 2> parse_range(const std::string& option, const std::string& text);
-/// LOW:HIGH or LOW,HIGH, values or percentages of the data's values, as in 2%:98%.
+/// Reads LOW:HIGH or LOW,HIGH, values or percentages of the data's values, as in 2%:98%.
 RangeEnds parse_value_range(const std::string& option, const std::string& text);
 /// Returns a finite positive number, or the quotient of two: "0.001", "1e-4", "1/512".
 double parse_tolerance(const std::string& option, const std::string& text);
@@ -53,18 +53,18 @@ struct PictureTolerance {
 PictureTolerance parse_picture_tolerance(const std::string& option, const std::string& text);
 /// Returns a length on paper in mm: "85", "85mm", "8.5cm" or "3.35in".
 double parse_paper_length(const std::string& option, const std::string& text);
-/// "plane:X,Y,Z,NX,NY,NZ", "box:X0,Y0,Z0,X1,Y1,Z1", "sphere:X,Y,Z,R" or
+/// Reads "plane:X,Y,Z,NX,NY,NZ", "box:X0,Y0,Z0,X1,Y1,Z1", "sphere:X,Y,Z,R" or
 /// "cylinder:X0,Y0,Z0,X1,Y1,Z1,R"; "-" in front cuts the shape away.
 Clip parse_clip(const std::string& option, const std::string& text);
-/// "white", "black", "#RRGGBB" in sRGB or linear "R,G,B", each >= 0.
+/// Reads "white", "black", "#RRGGBB" in sRGB or linear "R,G,B", each >= 0.
 Rgb<double> parse_color(const std::string& option, const std::string& text);
-/// "AMBIENT,DIFFUSE,SPECULAR" or "AMBIENT,DIFFUSE,SPECULAR,POWER".
+/// Reads "AMBIENT,DIFFUSE,SPECULAR" or "AMBIENT,DIFFUSE,SPECULAR,POWER".
 Shading parse_shading(const std::string& option, const std::string& text);
-/// "head", "directional:X,Y,Z" or "point:X,Y,Z"; a color may follow behind a colon.
+/// Reads "head", "directional:X,Y,Z" or "point:X,Y,Z"; a color may follow behind a colon.
 Light parse_light(const std::string& option, const std::string& text);
-/// "VALUE", "VALUE:COLOR" or "VALUE:COLOR:OPACITY"; an empty color is white.
+/// Reads "VALUE", "VALUE:COLOR" or "VALUE:COLOR:OPACITY"; an empty color is white.
 Isosurface parse_isosurface(const std::string& option, const std::string& text);
-/// "x=VALUE", "y=VALUE", "z=VALUE" or "X,Y,Z,NX,NY,NZ"; an opacity may follow behind a colon.
+/// Reads "x=VALUE", "y=VALUE", "z=VALUE" or "X,Y,Z,NX,NY,NZ"; an opacity may follow behind a colon.
 Slice parse_slice(const std::string& option, const std::string& text);
 
 }  // namespace pellucid::cli

@@ -13,7 +13,8 @@ using pellucid::Tick;
 /// Returns the position of a count on an axis from 0 to `largest` (>= 1): log(1 + count), so that
 /// one shows beside a million, and none is at 0.
 double count_share(double count, double largest);
-/// Powers of ten on that axis, every one or every second and so on, at most `most` (>= 1) of them.
+/// Returns powers of ten on that axis, every one or every second and so on, at most `most` (>= 1)
+/// of them.
 std::vector<Tick> count_ticks(double largest, int most);
 
 }  // namespace pellucid::cli

@@ -32,9 +32,9 @@ class Canvas {
 
   void fill(const PixelBox& box, Color8 color);
   void fill_linear(const PixelBox& box, const std::array<double, 3>& linear);
-  /// A line of one pixel around the box.
+  /// Draws a line of one pixel around the box.
   void frame(const PixelBox& box, Color8 color);
-  /// In a font of 5 × 7 squares; (x, y) is the upper left pixel. What is not ASCII is a '?'.
+  /// Writes in a font of 5 × 7 squares; (x, y) is the upper left pixel. What is not ASCII is a '?'.
   void text(int x, int y, std::string_view text, Color8 color);
 
   const Image& image() const noexcept { return image_; }

@@ -5,11 +5,11 @@
 
 namespace pellucid::cli {
 
-/// IEC 61966-2-1, the way back: 8 bits to linear light.
+/// Converts 8 bits to linear light: IEC 61966-2-1, the way back.
 double linear_of(double signal8);
 
-/// matplotlib's viridis at 0 <= x <= 1, from dark to bright, linear RGB. Lightness grows evenly,
-/// also for those who tell few colors apart.
+/// Returns matplotlib's viridis at 0 <= x <= 1, from dark to bright, linear RGB. Lightness grows
+/// evenly, also for those who tell few colors apart.
 std::array<double, 3> viridis_at(double x);
 
 }  // namespace pellucid::cli

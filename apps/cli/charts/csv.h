@@ -13,8 +13,8 @@ namespace pellucid::cli {
 /// a byte-order mark and empty lines at the end are passed over.
 class CsvTable {
  public:
-  /// `name` is for messages. Throws Error: nothing in it, an empty or repeated column name, a row
-  /// with more or fewer cells than the header.
+  /// Reads a table. `name` is for messages. Throws Error: nothing in it, an empty or repeated
+  /// column name, a row with more or fewer cells than the header.
   CsvTable(std::string text, std::string name);
   CsvTable(const CsvTable&) = delete;  // the cells point into the text
   CsvTable& operator=(const CsvTable&) = delete;
@@ -34,11 +34,11 @@ class CsvTable {
   /// Numbers separated by ';'. An empty cell is an empty list.
   template <class T>
   std::vector<T> list(std::size_t row, std::size_t column) const;
-  /// Such lists separated by '|'. An empty cell is no list.
+  /// Reads such lists separated by '|'. An empty cell is no list.
   template <class T>
   std::vector<std::vector<T>> lists(std::size_t row, std::size_t column) const;
 
-  /// "name: line 3", for messages about a whole row.
+  /// Returns "name: line 3", for messages about a whole row.
   std::string where(std::size_t row) const;
 
  private:
@@ -58,7 +58,8 @@ class CsvWriter {
  public:
   explicit CsvWriter(const std::vector<std::string_view>& columns);
   void cell(std::string_view text);
-  /// The shortest decimal that a binary64 reader takes back to this very value, also for a float.
+  /// Writes the shortest decimal that a binary64 reader takes back to this very value, also for a
+  /// float.
   void cell(double value);
   void end_row();
   const std::string& text() const noexcept { return text_; }

@@ -34,7 +34,7 @@ int place(double share, int length) {
   return static_cast<int>(std::lround(share * length));
 }
 
-/// Light to dark, in [0, 1].
+/// Returns the color of a count, light to dark, in [0, 1].
 std::array<double, 3> count_color(double share) {
   return viridis_at(1 - share);
 }

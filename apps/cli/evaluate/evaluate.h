@@ -43,7 +43,7 @@ double wide(T x) {
 template <class T>
 T non_negative(const CsvTable& table, std::size_t row, std::size_t column);
 
-/// A list of exactly `count` numbers.
+/// Reads a list of exactly `count` numbers.
 template <class T>
 std::vector<T> list_of(const CsvTable& table, std::size_t row, std::size_t column,
                        std::size_t count);

@@ -31,7 +31,7 @@ Vec3<double> in_double(const Vec3<T>& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
 
-/// Gaussians of one variable; numbers rounded to T.
+/// Returns Gaussians of one variable; numbers rounded to T.
 template <class T>
 MultivariateTransferFunction gaussians_of(const CsvTable& table,
                                           const std::vector<std::size_t>& columns,
@@ -62,7 +62,7 @@ MultivariateTransferFunction gaussians_of(const CsvTable& table,
   }
 }
 
-/// In double whatever the inputs were rounded to: there is no other kernel.
+/// Integrates in double whatever the inputs were rounded to: there is no other kernel.
 SegmentResult<double> integrate_gaussian_cell(const CubicBernstein<double>& data, double length,
                                               const MultivariateTransferFunction& function,
                                               double tolerance) {

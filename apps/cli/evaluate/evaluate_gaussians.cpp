@@ -93,7 +93,8 @@ void check_depth(const std::string& what, T peak, T length) {
                           is_single<T> ? "float; use double" : "double"));
 }
 
-/// A sum of one primitive is computed by the same kernels as one of many.
+/// Returns the function of a sum; one of one primitive is computed by the same kernels as one of
+/// many.
 template <class T>
 MultivariateTransfer<T> transfer_of(const std::vector<Gaussian<T>>& primitives,
                                     std::size_t channels) {

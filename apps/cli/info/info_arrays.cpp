@@ -13,7 +13,7 @@ std::string centering_name(const VolumeArray& array) {
   return array.centering == Centering::point ? "point" : "cell";
 }
 
-/// Also of infinite values, of which no volume can be made.
+/// Describes a component, also of infinite values, of which no volume can be made.
 std::string component_text(const VolumeStatistics& component) {
   std::string text = component.finite == 0
                          ? "no finite value"

@@ -34,7 +34,7 @@ struct RelativePicture {
 RelativePicture render_relative(double share, double estimated_range,
                                 const std::function<RenderResult(double tolerance)>& render_at);
 
-/// "1 %"
+/// Returns "1 %".
 std::string percent_text(double share);
 
 /// Returns the note on a picture that looks black: nothing in it is above the tolerance, or with

@@ -101,7 +101,7 @@ void write_error_map(Image& image, double tolerance, const std::string& path) {
   image.metadata.erase("pellucid.error_map");
 }
 
-/// At the tolerance that is the wanted share of the picture's range.
+/// Renders at the tolerance that is the wanted share of the picture's range.
 RenderResult render_at_share(const RenderArguments& arguments, PreparedScene& prepared,
                              std::optional<std::string>& over) {
   const double share = *prepared.scene.integration.relative_tolerance;

@@ -109,7 +109,7 @@ struct PreparedScene {
 std::string source_text(const RenderArguments& arguments);
 
 void add_render_options(CommandLine& command, RenderArguments& arguments);
-/// The part of them that says what is seen, and from where.
+/// Adds the part of them that says what is seen, and from where.
 void add_scene_options(CommandLine& command, RenderArguments& arguments);
 
 /// Adds the options of the picture: its size, its background and its color bar.
@@ -212,7 +212,7 @@ int fail_on_ranks(const std::string& wrong_use);
 /// approximated anew. Throws Error.
 void set_scene_tolerance(PreparedScene& prepared, double tolerance);
 
-/// In all channels together; of a mesh over the points or cells that are used.
+/// Counts NaN in all channels together; of a mesh over the points or cells that are used.
 std::size_t nan_values(const PreparedScene& prepared);
 /// Calls visit(name, volume) for each volume of a layer that comes from a file and is shown as a
 /// field. `index` and `layers`: of the layer among so many, for the name.
@@ -223,12 +223,13 @@ void visit_fields_of_files(const Layer& layer, const LayerDescription& descripti
 /// thread count, so that the same scene gives the same file.
 void add_metadata(const RenderArguments& arguments, const PreparedScene& prepared,
                   const RenderReport& report, Image& image);
-/// Nearest white, farthest black, transparent where the pixel is empty.
+/// Returns the depths as a picture: nearest white, farthest black, transparent where the pixel is
+/// empty.
 Image depth_picture(const Image& image);
 /// Returns the time and the accuracy of a picture, a few lines for people.
 std::vector<std::string> report_lines(const RenderArguments& arguments,
                                       const PreparedScene& prepared, const RenderReport& report);
-/// `largest` is the largest channel of any pixel.
+/// Returns the report as JSON. `largest` is the largest channel of any pixel.
 Json report_json(const RenderArguments& arguments, const PreparedScene& prepared,
                  const RenderedPicture& picture, double largest,
                  const std::vector<std::string>& written);

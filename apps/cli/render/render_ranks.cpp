@@ -181,7 +181,8 @@ class RankRun {
     }
   }
 
-  /// Rank 0 frames what is seen; all ranks render its drafts, and take its camera.
+  /// Places the camera. Rank 0 frames what is seen; all ranks render its drafts, and take its
+  /// camera.
   void place_camera(const BrickTree& tree, PreparedScene& prepared) {
     Scene draft = draft_scene(prepared.scene);
     cli::place_camera(arguments_, prepared, [&](const Scene& scene) {

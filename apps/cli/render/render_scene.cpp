@@ -188,7 +188,7 @@ void set_integration(const RenderArguments& arguments, Integration& integration)
   integration.step = *arguments.step;
 }
 
-/// A text of the command line that does not read is a wrong argument.
+/// Calls parse(); a text of the command line that does not read is a wrong argument.
 template <class Parse>
 auto parse_argument(const char* argument, Parse&& parse) {
   try {
@@ -200,7 +200,7 @@ auto parse_argument(const char* argument, Parse&& parse) {
   }
 }
 
-/// Behind the channels of the input, or alone.
+/// Adds channels behind those of the input, or alone.
 void add_channels(const RenderArguments& arguments, LayerDescription& description) {
   if (arguments.channels.empty()) return;
   if (description.mesh) {
@@ -229,7 +229,8 @@ MultivariateDescription gaussians(const RenderArguments& arguments) {
   return function;
 }
 
-/// One array is the field, unless it is given a name as a channel; several are channels.
+/// Sets the volume. One array is the field, unless it is given a name as a channel; several are
+/// channels.
 void set_volume(const RenderArguments& arguments, LayerDescription& description) {
   arguments.mesh.refuse_q("a volume");
   FieldSource field = field_source(arguments.input, arguments.volume);
@@ -287,7 +288,7 @@ void refuse_options_of_one_layer(const RenderArguments& arguments,
   }
 }
 
-/// The layers of --layer and --labels, and the clips of --clip.
+/// Adds the layers of --layer and --labels, and the clips of --clip.
 void add_layers(const RenderArguments& arguments, SceneDescription& description) {
   const VolumeOptions no_options;
   for (const std::string& file : arguments.layers) {

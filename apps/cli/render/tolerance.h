@@ -14,7 +14,7 @@ namespace pellucid::cli {
 std::optional<std::string> over_tolerance(const RenderReport& report,
                                           const Integration& integration);
 
-/// "all", "none" or percent; what is neither all nor none is not rounded to it.
+/// Returns "all", "none" or percent; what is neither all nor none is not rounded to it.
 std::string share_text(std::uint64_t part, std::uint64_t whole);
 
 }  // namespace pellucid::cli

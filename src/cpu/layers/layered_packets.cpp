@@ -159,7 +159,7 @@ void LayeredPackets::add(const ClippedLayer& layer, std::size_t number, const Pa
   for (std::size_t i = first; i < seen_.size(); ++i) seen_[i].in_lanes = all;
 }
 
-/// As many rays as a packet has lanes, and what lies ahead of them.
+/// Rays of a packet, one per lane, and what lies ahead of them.
 class LayeredPackets::Packet {
  public:
   explicit Packet(const LayeredPackets& of)
@@ -277,7 +277,7 @@ class LayeredPackets::Packet {
     }
   }
 
-  /// How much longer rays are taken for where there are surfaces: one may be at the very end.
+  /// Returns how much longer a ray counts as where there are surfaces: one may be at the very end.
   double beyond(std::size_t lane) const {
     return of_.marks_ > 0 ? 1e-6 * (inside_[lane].end - inside_[lane].begin) : 0;
   }

@@ -8,7 +8,8 @@
 namespace pellucid::reference {
 namespace {
 
-/// Gauß-Jordan elimination with row pivoting; the volume has checked that the matrix is regular.
+/// Inverts by Gauß-Jordan elimination with row pivoting; the volume has checked that the matrix is
+/// regular.
 std::array<Real3, 3> inverted(std::array<Real3, 3> row) {
   std::array<Real3, 3> result{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   for (std::size_t c = 0; c < 3; ++c) {

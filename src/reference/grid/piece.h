@@ -12,17 +12,18 @@ namespace pellucid::reference {
 /// A stretch of a ray on which extinction and color are cubics: w in [0, 1] from front to back.
 class Piece {
  public:
-  /// The part [u_begin, u_end] of a chord, on which the data stays within the interval; the stretch
-  /// of the ray is [t_begin, t_end] in world arc length.
+  /// Takes the part [u_begin, u_end] of a chord, on which the data stays within the interval; the
+  /// stretch of the ray is [t_begin, t_end] in world arc length.
   Piece(const Chord& chord, Real u_begin, Real u_end, const TableInterval& interval, Real t_begin,
         Real t_end);
 
   double t(double w) const;
-  /// Optical depth of [w_begin, w_end]: Gauß-Legendre with four nodes, exact to degree 7.
+  /// Returns the optical depth of [w_begin, w_end]: Gauß-Legendre with four nodes, exact to degree
+  /// 7.
   double depth(double w_begin, double w_end) const;
-  /// ∫ extinction · exp(−depth from w_begin) · s over [w_begin, w_end], where s in [0, 1] says how
-  /// far the data has come from the left control point to the right one. Adaptive Gauß-Kronrod
-  /// (15 points) to a relative 1e-12.
+  /// Returns ∫ extinction · exp(−depth from w_begin) · s over [w_begin, w_end], where s in [0, 1]
+  /// says how far the data has come from the left control point to the right one. Adaptive
+  /// Gauß-Kronrod (15 points) to a relative 1e-12.
   double weight_of_right(double w_begin, double w_end) const;
 
   double rate(double w) const;  ///< extinction · length of the piece
@@ -47,7 +48,7 @@ class Gatherer {
   /// Adds a part by its optical depth and what it would radiate with nothing in front.
   void add(double depth, const std::array<Real, 3>& light);
 
-  /// No more than 1e-16 of the light comes from behind.
+  /// Returns whether no more than 1e-16 of the light comes from behind.
   bool done() const;
   /// Returns all but the half-opacity depth.
   ReferencePixel result() const;

@@ -75,8 +75,8 @@ LitStretch LitLayer::prepared(LayerStretch stretch, const RayLights& lights) con
   return result;
 }
 
-/// Light has kinks, and bends where the gradient is least: there the normal turns. Minima beyond
-/// the ends of the stretch count as well.
+/// Adds cuts where light has kinks, and bends where the gradient is least: there the normal turns.
+/// Minima beyond the ends of the stretch count as well.
 void LitLayer::add_shading_cuts(const RayLights& lights, LitStretch& stretch) const {
   const Real t_begin = stretch.data.t_begin, length = stretch.data.t_end - t_begin;
   const GradientCubics gradient = cubics_of(stretch.data.chords, gradient_, 0, 1);

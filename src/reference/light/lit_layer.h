@@ -23,7 +23,7 @@ struct LitStretch {
 /// A layer with its light, gradient opacity and surfaces, or without. A view of it.
 class LitLayer {
  public:
-  /// The layer is in its place.
+  /// Prepares a layer, which is in its place.
   LitLayer(const Layer& layer, const std::vector<Clip>& of_scene);
 
   const Layer& layer() const { return layer_; }

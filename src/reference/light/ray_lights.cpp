@@ -92,8 +92,9 @@ void RayLights::add_kinks(const Shading& shading, const GradientCubics& gradient
   for (const Bend& bend : bends_) kinks.push_back((bend.t - t_begin) / length);
 }
 
-/// With d = position - x, linear in u: n·l is 0 where g·d is. n·h is 0 where g·d + |d| g·v is, or
-/// (g·d)² = |d|² (g·v)², half of whose zeros are those of a difference.
+/// Adds the kinks of a point light. With d = position - x, linear in u: n·l is 0 where g·d is. n·h
+/// is 0 where g·d + |d| g·v is, or (g·d)² = |d|² (g·v)², half of whose zeros are those of a
+/// difference.
 void RayLights::add_kinks_of_point(const Seen& light, bool of_half, const GradientCubics& gradient,
                                    Real t_begin, Real length, std::vector<Real>& kinks) const {
   Polynomial along, square;

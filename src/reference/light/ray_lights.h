@@ -28,7 +28,8 @@ class RayLights {
  public:
   RayLights(const std::vector<Light>& lights, const RealRay& ray);
 
-  /// At the position t of the ray, with the normal there, of any length up to 1.
+  /// Returns the reflection at the position t of the ray, with the normal there, of any length up
+  /// to 1.
   Reflection reflection(const Shading& shading, const Real3& normal, Real t) const;
 
   /// Adds where the reflection has a kink on the stretch [t_begin, t_begin + length], as u: where

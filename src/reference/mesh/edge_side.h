@@ -22,9 +22,9 @@ class EdgeSides {
     bool certain;  ///< else neither sign nor area are known well enough
   };
 
-  /// In extended precision.
+  /// Tells the side in extended precision.
   Side quick(const Real3& a, const Real3& b) const;
-  /// In as many bits as it takes (512: factors of 170). Certain.
+  /// Tells the side in as many bits as it takes (512: factors of 170). Certain.
   Side exact(const Real3& a, const Real3& b) const;
 
  private:

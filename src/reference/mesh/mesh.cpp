@@ -53,7 +53,7 @@ class Encounter {
     std::array<Real, 4> weight;
   };
 
-  /// With the face that lies opposite to a point.
+  /// Meets the face that lies opposite to a point.
   std::optional<Meeting> with_face(std::size_t opposite) {
     std::array<std::size_t, 3> p{};
     for (std::size_t i = 0, n = 0; i < 4; ++i) {

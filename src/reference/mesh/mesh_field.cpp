@@ -9,7 +9,8 @@
 namespace pellucid::reference {
 namespace {
 
-/// Between the least and the largest of the four, whatever the weights add up to.
+/// Returns the weighted mean, between the least and the largest of the four, whatever the weights
+/// add up to.
 Real mean(const std::array<Real, 4>& values, const std::array<Real, 4>& weights) {
   Real sum = 0;
   for (std::size_t i = 0; i < 4; ++i) sum += weights[i] * (values[i] - values[0]);

@@ -14,7 +14,7 @@ struct Weighted {
   Real3 gradient;
 };
 
-/// Cramer's rule for g · (p_i - p_0) = v_i - v_0.
+/// Solves g · (p_i - p_0) = v_i - v_0 by Cramer's rule.
 Weighted weighted_gradient(const MeshChannels& channels, int channel, const Tetrahedron& t) {
   std::array<Real3, 4> point;
   std::array<Real, 4> value;

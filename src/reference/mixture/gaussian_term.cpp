@@ -15,7 +15,7 @@ Real middle(Real x, Real y) {
   return (x + y) / 2;
 }
 
-/// De Casteljau's algorithm at 1/2.
+/// Splits by De Casteljau's algorithm at 1/2.
 std::pair<Cubic, Cubic> halves_of(const Cubic& b) {
   const Real m01 = middle(b[0], b[1]), m12 = middle(b[1], b[2]), m23 = middle(b[2], b[3]);
   const Real left = middle(m01, m12), right = middle(m12, m23), centre = middle(left, right);

@@ -16,7 +16,7 @@ using Cubic = std::array<Real, 4>;
 /// where each of the rows of K (v - c) is a cubic in w, because v is.
 class GaussianTerm {
  public:
-  /// `data` has a cubic for each channel of the scene.
+  /// Takes a primitive along data. `data` has a cubic for each channel of the scene.
   GaussianTerm(const GaussianPrimitive& primitive, const std::vector<Cubic>& data);
 
   std::pair<GaussianTerm, GaussianTerm> halves() const;

@@ -23,7 +23,7 @@ class Mixture {
   };
   const std::vector<GaussianPrimitive>& primitives() const { return *primitives_; }
   const std::vector<ChannelTable>& tables() const { return tables_; }
-  /// By which the extinctions of all terms are multiplied; null: nothing. LitLayer does it.
+  /// Returns the factor of the extinctions of all terms; null: there is none. LitLayer applies it.
   const ChannelTable* factor() const { return factor_ ? &*factor_ : nullptr; }
 
   /// Returns the parameters in (0, 1), ascending, at which a table's channel passes through one of

@@ -25,7 +25,7 @@ class MixtureGatherer {
     double before;  ///< optical depth at the front
   };
 
-  /// By the rule; false where it does not see enough.
+  /// Adds a part by the rule; false where it does not see enough.
   bool add_whole(const MixturePart& part, bool is_smooth);
 
   bool with_depth_;

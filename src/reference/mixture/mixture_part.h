@@ -25,7 +25,7 @@ struct MixtureSamples {
   double depth_to(double s) const;
   /// Returns the share of the part in front of which the depth grows from `before` to `target`.
   double share_at_depth(double before, double target) const;
-  /// ∫ e^(-depth from the front) · Σ rate · color.
+  /// Returns ∫ e^(-depth from the front) · Σ rate · color.
   std::array<Real, 3> radiance() const;
 };
 
@@ -34,12 +34,12 @@ struct MixtureSamples {
 /// depth is left out.
 class MixturePart {
  public:
-  /// [u_begin, u_end] of a cell's chords, one for each channel, between neighbouring cuts of the
-  /// mixture; [t_begin, t_begin + length] in world arc length.
+  /// Takes [u_begin, u_end] of a cell's chords, one for each channel, between neighbouring cuts of
+  /// the mixture; [t_begin, t_begin + length] in world arc length.
   MixturePart(const Mixture& mixture, const std::vector<Chord>& chords, Real u_begin, Real u_end,
               Real t_begin, Real length);
 
-  /// Nothing, along [t_begin, t_begin + length].
+  /// Makes a part of nothing, along [t_begin, t_begin + length].
   MixturePart(Real t_begin, Real length) : t_begin_(t_begin), length_(length) {}
 
   /// Adds the terms of another part along the same stretch of the ray.

@@ -24,7 +24,8 @@ class BlocksMapper final : public vtkMultiBlockVolumeMapper {
 
   MapperCore core;
 
-  /// Blocks of rectilinear grids count as well, which the superclass leaves out.
+  /// Returns the bounds of all blocks. Those of rectilinear grids count as well, which the
+  /// superclass leaves out.
   double* GetBounds() override;
   using vtkMultiBlockVolumeMapper::GetBounds;
   void Render(vtkRenderer* renderer, vtkVolume* volume) override;

@@ -22,7 +22,7 @@ namespace pellucid::plugin {
 /// is at most 1, so it adds as much again. Each of n ranks has 1 / 2n of the tolerance.
 class SharedPicture {
  public:
-  /// Both outlive it.
+  /// Shares the pictures of a mapper. Core and mapper outlive it.
   SharedPicture(MapperCore& core, vtkAbstractVolumeMapper& mapper);
   ~SharedPicture();
   SharedPicture(const SharedPicture&) = delete;
@@ -50,7 +50,7 @@ class SharedPicture {
 
   /// Returns what is known of the last picture: of those of all ranks.
   Outcome outcome() const;
-  /// Returns of how many processes' data pictures are.
+  /// Returns how many processes' data a picture is of.
   static int ranks();
 
  private:

@@ -78,8 +78,8 @@ int vtkPellucidImageVolumeRepresentation::RequestUpdateExtent(vtkInformation* re
   return 1;
 }
 
-/// ParaView cuts ghost cells off. Here they stay, and the mapper shows what is between them; the
-/// order of the ranks is by the bounds without them.
+/// Hands the data on. ParaView cuts ghost cells off. Here they stay, and the mapper shows what is
+/// between them; the order of the ranks is by the bounds without them.
 int vtkPellucidImageVolumeRepresentation::RequestData(vtkInformation* request,
                                                       vtkInformationVector** inputs,
                                                       vtkInformationVector* outputs) {
@@ -96,8 +96,9 @@ int vtkPellucidImageVolumeRepresentation::RequestData(vtkInformation* request,
   return 1;
 }
 
-/// ParaView does not move the boxes of data with the volume, by which it sets the camera's range
-/// and orders ranks. For their order it takes new boxes with new data alone.
+/// Moves the boxes of data. ParaView does not move the boxes of data with the volume, by which it
+/// sets the camera's range and orders ranks. For their order it takes new boxes with new data
+/// alone.
 int vtkPellucidImageVolumeRepresentation::ProcessViewRequest(vtkInformationRequestKey* request,
                                                              vtkInformation* in,
                                                              vtkInformation* out) {

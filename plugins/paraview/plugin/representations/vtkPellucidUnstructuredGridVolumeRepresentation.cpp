@@ -71,9 +71,9 @@ vtkIdType vtkPellucidUnstructuredGridVolumeRepresentation::GetPixelsOver() {
   return this->Own->picture.outcome().pixels_over;
 }
 
-/// ParaView cuts all cells into tetrahedra of its own before a mapper sees them. Here a grid goes
-/// on as it is: Pellucid cuts cells so that neighbours agree. Blocks are merged, and cut, by
-/// ParaView.
+/// Hands the grid on. ParaView cuts all cells into tetrahedra of its own before a mapper sees them.
+/// Here a grid goes on as it is: Pellucid cuts cells so that neighbours agree. Blocks are merged,
+/// and cut, by ParaView.
 int vtkPellucidUnstructuredGridVolumeRepresentation::RequestData(vtkInformation* request,
                                                                  vtkInformationVector** inputs,
                                                                  vtkInformationVector* outputs) {
@@ -93,9 +93,9 @@ int vtkPellucidUnstructuredGridVolumeRepresentation::RequestData(vtkInformation*
   return vtkVolumeRepresentation::RequestData(request, inputs, outputs);
 }
 
-/// ParaView does not move the boxes of data with the volume, by which it sets the camera's range
-/// and orders ranks. For their order it takes new boxes with new data alone. It maps one component
-/// of a vector, or its length.
+/// Moves the boxes of data. ParaView does not move the boxes of data with the volume, by which it
+/// sets the camera's range and orders ranks. For their order it takes new boxes with new data
+/// alone. It maps one component of a vector, or its length.
 int vtkPellucidUnstructuredGridVolumeRepresentation::ProcessViewRequest(
     vtkInformationRequestKey* request, vtkInformation* in, vtkInformation* out) {
   const bool shares = pellucid::plugin::SharedPicture::ranks() > 1;
