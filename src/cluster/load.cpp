@@ -77,7 +77,7 @@ LayerPlan plan_of(LayerDescription layer) {
   return plan;
 }
 
-/// Throws Error where a layer has no function, for a default one is made of all of the data.
+/// Throws Error where a layer has no look, for a default one is made of all of the data.
 void check_functions(const SceneDescription& scene) {
   for (std::size_t i = 0; i < scene.layers.size(); ++i) {
     const LayerDescription& layer = scene.layers[i];

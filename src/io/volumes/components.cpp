@@ -209,8 +209,8 @@ std::vector<VolumeData> read_as(const ReadOn& read, const ValueLayout& layout, s
   return take_components(components, points, name, layout.note);
 }
 
-/// Reads stored components alone. `read` stands at the first value of all, or of the first
-/// component of the range where they lie one behind the other.
+/// Reads components of types that files alone have. `read` stands at the first value of all, or of
+/// the first component of the range where they lie one behind the other.
 std::vector<VolumeData> read_stored_only(const ReadOn& read, const ValueLayout& layout,
                                          std::size_t points, ComponentRange range,
                                          const std::string& name) {

@@ -36,8 +36,8 @@ void each_row(const std::array<int, 3>& count, const ParallelFor& parallel, cons
   });
 }
 
-/// Gathers cubes of larger ones. A cube is all of the kind where its parts are: is_all(part) says
-/// so of one of them.
+/// Finds the cubes that are all of a kind: those whose parts are. is_all(part) says so of one of
+/// them.
 template <class IsAll>
 void gather(Cubes& cubes, const std::array<int, 3>& parts, const ParallelFor& parallel,
             const IsAll& is_all) {

@@ -28,11 +28,11 @@ Look scan_look(const LookedAt& data, bool medical);
 Look microscopy_look(const LookedAt& data);
 /// Scatters white light.
 Look fog_look(const LookedAt& data);
-/// Returns surfaces of equal value.
+/// Returns the look of surfaces of equal value.
 Look simulation_look(const LookedAt& data);
 /// Returns the surface between two values.
 Look mask_look(double lower, double upper);
-/// Returns values on and below the surface of a body.
+/// Returns the look of values on and below the surface.
 Look body_look(const LookedAt& data);
 
 }  // namespace pellucid
