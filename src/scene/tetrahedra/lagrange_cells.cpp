@@ -113,9 +113,7 @@ LagrangeNodes::LagrangeNodes(CellShape shape, const std::int32_t* layout)
   nodes_.assign(static_cast<std::size_t>(side_[0]) * static_cast<std::size_t>(side_[1]) *
                     static_cast<std::size_t>(side_[2]),
                 -1);
-  const auto node = [&](int i, int j, int k) -> int& {
-    return nodes_[index(i, j, k)];
-  };
+  const auto node = [&](int i, int j, int k) -> int& { return nodes_[index(i, j, k)]; };
   if (shape == CellShape::lagrange_tetrahedron) {
     for (int n = 0; n < count; ++n) {
       const Weights w = tetrahedron_weights(n, order);
