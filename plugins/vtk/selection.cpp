@@ -25,8 +25,11 @@ void show_number_of_prop(vtkRenderer& renderer, Image& image) {
   std::array<float, 3> number{};
   selector.GetPropColorValue(number.data());
   selector.EndRenderProp();
+  // ParaView's selector gives no number to props of which it selects nothing: what is behind them
+  // is selected.
+  const bool has_number = number != std::array<float, 3>{};
   for (std::array<float, 4>& pixel : image.pixels) {
-    if (pixel[3] >= seen) {
+    if (has_number && pixel[3] >= seen) {
       pixel = {number[0], number[1], number[2], 1};
     } else {
       pixel = {0, 0, 0, 0};

@@ -136,7 +136,7 @@ FunctionSettings settings_of(vtkColorTransferFunction& function) {
   made.way = way_of_vtk;
   made.is_indexed = function.GetIndexedLookup() != 0;
   auto* const steps = vtkDiscretizableColorTransferFunction::SafeDownCast(&function);
-  made.is_discretized = steps != nullptr && steps->GetDiscretize() != 0;
+  if (steps != nullptr && steps->GetDiscretize() != 0) made.steps = steps->GetNumberOfValues();
   return made;
 }
 

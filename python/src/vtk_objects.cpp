@@ -193,8 +193,10 @@ FunctionSettings colors_of(const VtkObject& function) {
     return colors_between(way, 0, 1, count);
   };
   made.is_indexed = function.get<bool>("GetIndexedLookup");
-  made.is_discretized =
-      function.is_a("vtkDiscretizableColorTransferFunction") && function.get<bool>("GetDiscretize");
+  if (function.is_a("vtkDiscretizableColorTransferFunction") &&
+      function.get<bool>("GetDiscretize")) {
+    made.steps = function.get<int>("GetNumberOfValues");
+  }
   return made;
 }
 

@@ -285,6 +285,13 @@ def test_discretized_colors_are_those_of_the_mappers():
     notes = []
     largest, said = off(property_of(constant(0.5), function), 1e-5, notes=notes)
     assert largest <= said and any("discretized" in line for line in notes)
+    function.SetNumberOfValues(256)  # as ParaView's have
+    function.Build()
+    notes = []
+    largest, said = off(property_of(constant(0.5), function), 1e-5, notes=notes)
+    assert largest <= said and notes == []
+    function.SetNumberOfValues(4)
+    function.Build()
     # So they are in VTK's own picture, which has a table of them.
     renderer, volume = strip()
     volume.SetProperty(property_of(constant(0.5), function))

@@ -117,7 +117,8 @@ FittedCurve FunctionReader::colors(const FunctionSettings& function, const RampR
   if (function.is_indexed) {
     notes_->add("IndexedLookup of colors is left out, as VTK's mappers leave it out");
   }
-  if (function.is_discretized) {
+  // ParaView's functions have 256 unless they are told otherwise, which are not seen.
+  if (function.steps > 0 && function.steps < 256) {
     notes_->add("the steps of discretized colors are left out, as VTK's mappers leave them out");
   }
   return fitted(function, std::numeric_limits<double>::infinity(), ramp);

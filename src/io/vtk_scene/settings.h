@@ -26,7 +26,8 @@ struct FunctionSettings {
   imported::ShapedFunction shape{};  ///< with all of its nodes, as they are
   imported::SampleFunction own{};    ///< VTK's own values: opacities three times, or colors
   imported::SampleWay way{};         ///< VTK's ways of CIEDE2000; colors alone have them
-  bool is_indexed = false, is_discretized = false;  ///< colors alone are
+  bool is_indexed = false;           ///< colors alone are
+  int steps = 0;                     ///< of colors that have some; 0: they have none
 };
 
 /// Reflection of light by a component.
