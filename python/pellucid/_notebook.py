@@ -7,10 +7,9 @@ of that machine.
 """
 from __future__ import annotations
 
-import secrets
 import sys
 import weakref
-from typing import Any, List, Optional
+from typing import Any, Optional
 
 TARGET = "pellucid.viewer"
 _viewers: "weakref.WeakValueDictionary[str, Any]" = weakref.WeakValueDictionary()
@@ -76,17 +75,18 @@ def _open(comm: Any, message: Any) -> None:
         _Relay(comm, viewer.address)
 
 
-def frame_name(viewer: Any, away: bool) -> Optional[str]:
+def frame_name(viewer: Any, number: str, away: bool) -> Optional[str]:
     """The name of a frame that can reach the viewer through the kernel; None outside of one.
 
-    away  whether the data are in the kernel alone
+    number  of the viewer, of letters and digits
+    away    whether the data are in the kernel alone
     """
-    kernel = getattr(sys.modules.get("ipykernel.kernelapp"), "IPKernelApp", None)
-    if kernel is None or not kernel.initialized():
+    application = getattr(sys.modules.get("ipykernel.kernelapp"), "IPKernelApp", None)
+    if application is None or not application.initialized():
         return None
-    kernel.instance().kernel.comm_manager.register_target(TARGET, _open)
-    number = getattr(viewer, "_number", None)
-    if number is None:
-        number = viewer._number = secrets.token_hex(16)
-        _viewers[number] = viewer
+    comms = getattr(application.instance().kernel, "comm_manager", None)
+    if comms is None:
+        return None
+    comms.register_target(TARGET, _open)
+    _viewers[number] = viewer
     return f"pellucid:{number}{':away' if away else ''}"

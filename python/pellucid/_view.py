@@ -8,6 +8,7 @@ import html
 import json
 import os
 import pathlib
+import secrets
 import sys
 import weakref
 from typing import Any, Optional, Union
@@ -72,6 +73,8 @@ class Viewer:
         self._server = ViewerServer(scene, port, threads, _NOTEBOOKS)
         self._file: Optional[str] = None
         self._process = os.getpid()
+        # What a frame calls it: nobody who sees a saved notebook learns the address by it.
+        self._number = secrets.token_hex(16)
         _running.add(self)
 
     @property
@@ -154,7 +157,7 @@ class Viewer:
         page = self._page()
         if page is None and not self.running:
             return "<p>This viewer was stopped.</p>"
-        name = frame_name(self, away=page is None) if self.running else None
+        name = frame_name(self, self._number, away=page is None) if self.running else None
         if page is None and name is not None and self._embed is None:
             page = _page_for_kernel()
         if page is None:
