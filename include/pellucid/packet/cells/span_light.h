@@ -203,8 +203,8 @@ class SpanLight {
     return measure(change, piece.spread.kinks, F(transfer.largest_color), from, to);
   }
   /// Bounds the light on colors up to `largest` that differ by `change`; `kinks`: their error.
-  [[gnu::noinline]] LightOfPiece<N> measure(F change, F kinks, F largest, F from,
-                                            F to) const noexcept {
+  [[gnu::flatten, gnu::noinline]] LightOfPiece<N> measure(F change, F kinks, F largest, F from,
+                                                          F to) const noexcept {
     LightOfPiece<N> result;
     result.along = along(from, to);
     const Bounds<F> squares = result.along.square();
@@ -259,10 +259,11 @@ class SpanLight {
   /// Returns the color of a piece by three Gauss nodes, or by six in the lanes of `more`. The
   /// depths at the nodes are exact for the extinction of a table; where a factor weakens it, those
   /// of PanelNodes.
-  [[gnu::noinline]] Rgb<F> color(const LightOfPiece<N>& of, const SpanPiece<float, N>& piece,
-                                 const SpanLanes<float, N>& span, M lanes, M more,
-                                 const BinnedTransfer& transfer,
-                                 ColorInterval<F>& known) const noexcept {
+  [[gnu::flatten, gnu::noinline]] Rgb<F> color(const LightOfPiece<N>& of,
+                                               const SpanPiece<float, N>& piece,
+                                               const SpanLanes<float, N>& span, M lanes, M more,
+                                               const BinnedTransfer& transfer,
+                                               ColorInterval<F>& known) const noexcept {
     const NodesOfLanes<N> nodes(more);
     F rate[6], depth[6];
     if (light_.factor == nullptr) {
@@ -405,7 +406,7 @@ class SpanLight {
 
   /// Returns the first place behind `from` where g·l of any light, or g·h, changes its sign; 2:
   /// none.
-  [[gnu::noinline]] F next_kink(M lanes, F from) const noexcept {
+  [[gnu::flatten, gnu::noinline]] F next_kink(M lanes, F from) const noexcept {
     F nearest(2);
     from = min(from, F(1));
     const GradientStretch<F> whole = around(F(0));
