@@ -108,15 +108,11 @@ class CellMarch {
     return begun;
   }
 
-  /// The place in a step's cell, [0,1]³, so far from the block's entry; rounded by u.
-  Vec3<F> place(const Step& s, D distance) const noexcept {
-    Vec3<F> local;
-    for (int a = 0; a < 3; ++a) {
-      const D from_corner = place_[a] - convert<double>(s.from[a]);
-      local[a] =
-          clamp(convert<float>(multiply_add(distance, direction_[a], from_corner)), F(0), F(1));
-    }
-    return local;
+  /// Returns the place among a step's corners, [0,1]³, so far from the block's entry; rounded by u.
+  Vec3<F> place(const Step& s, D distance) const noexcept { return place(s.from, distance); }
+  /// Returns the same in the step's own cell, which may be outside of the outermost values.
+  Vec3<F> place_in_cell(const Step& s, D distance) const noexcept {
+    return place(s.cell, distance);
   }
 
   /// One cell of each of the lanes that walk, of data of this type; of the others something that
@@ -164,6 +160,15 @@ class CellMarch {
   F jump, second_difference, variation;
 
  private:
+  Vec3<F> place(const F (&lower_corner)[3], D distance) const noexcept {
+    Vec3<F> local;
+    for (int a = 0; a < 3; ++a) {
+      const D from_corner = place_[a] - convert<double>(lower_corner[a]);
+      local[a] =
+          clamp(convert<float>(multiply_add(distance, direction_[a], from_corner)), F(0), F(1));
+    }
+    return local;
+  }
   /// Begins the next walks in these lanes.
   void enter(M lanes, const All& walks) noexcept {
     const int at = next_;

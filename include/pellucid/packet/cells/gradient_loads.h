@@ -25,11 +25,17 @@ class GradientLoads {
   /// there is a factor of it, the magnitude.
   void operator()(M lanes, const CellPositions<N>& places, CubicBernstein<F> (&gradient)[3],
                   CubicBernstein<F>& magnitude) const noexcept {
-    load(lanes, places.cell);
     const Vec3<F> entry{convert<float>(places.entry.x), convert<float>(places.entry.y),
                         convert<float>(places.entry.z)};
     const Vec3<F> exit{convert<float>(places.exit.x), convert<float>(places.exit.y),
                        convert<float>(places.exit.z)};
+    (*this)(lanes, places.cell, entry, exit, gradient, magnitude);
+  }
+  /// The same of ways from `entry` to `exit`, places [0,1]³ in the cells.
+  void operator()(M lanes, const Batch<std::int32_t, N> (&cell)[3], const Vec3<F>& entry,
+                  const Vec3<F>& exit, CubicBernstein<F> (&gradient)[3],
+                  CubicBernstein<F>& magnitude) const noexcept {
+    load(lanes, cell);
     CellCorners<F> corners[3];
     for (int a = 0; a < 3; ++a) corners[a] = derivative(a, light_.of_field != 0);
     CubicBernstein<F> of_axis[3];

@@ -1,29 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pellucid/packet/cells/gradient_loads.h"
-#include "pellucid/packet/cells/span_light.h"
+#include "pellucid/packet/cells/span_gradients.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
 namespace pellucid {
-
-/// Returns places in the world, from the middle of the grid, of plane coordinates.
-template <int N>
-Vec3<Batch<float, N>> place_in_world(const PacketGrid& grid, const PacketLight& light,
-                                     const Batch<std::int32_t, N> (&cell)[3],
-                                     const Vec3<Batch<double, N>>& in_cell) noexcept {
-  using D = Batch<double, N>;
-  Vec3<Batch<float, N>> result;
-  for (int c = 0; c < 3; ++c) {
-    D sum(light.world_origin[c]);
-    for (int a = 0; a < 3; ++a) {
-      const D at = convert<double>(cell[a]) + in_cell[a] - D(static_cast<double>(grid.padding[a]));
-      sum = multiply_add(D(light.world_direction[c][a]), at, sum);
-    }
-    result[c] = convert<float>(sum);
-  }
-  return result;
-}
 
 /// Returns the directions in the world from which rays with these in the grid come, of length 1.
 template <int N>
@@ -55,23 +36,29 @@ class LightLanes : public SpanLight<N> {
   using M = BatchMask<N>;
 
   LightLanes(const PacketGrid& grid, const PacketLight& light, const BlockMarch<N>& rays) noexcept
-      : SpanLight<N>(light, direction_to_eye(light, rays)),
-        grid_(grid),
-        light_(light),
-        loads_(grid, light) {}
+      : LightLanes(grid, light, direction_to_eye(light, rays)) {}
 
-  /// Begins spans. Returns the lanes in which a point light is too near for nodes.
-  [[gnu::noinline]] M begin(M lanes, const CellPositions<N>& places) noexcept {
-    loads_(lanes, places, this->gradient_, this->magnitude_);
-    Vec3<F> entry{F(0), F(0), F(0)};
-    if (light_.points > 0) entry = place_in_world(grid_, light_, places.cell, places.entry);
-    return this->begin_loaded(lanes, entry, convert<float>(places.length));
+  /// Begins with what a SpanFinder has found.
+  void begin(const SpanWorkspace<N>& spans, const SpanWays<N>& ways) noexcept {
+    ahead_.begin(spans, ways);
   }
 
+  /// Begins the next spans of the lanes' rays, of these world lengths. Returns the lanes in which a
+  /// point light is too near for nodes.
+  M take(M lanes, F length) noexcept {
+    const typename SpanGradients<N>::Found found = ahead_.take(lanes);
+    return this->begin_known(lanes, found.gradient, found.magnitude, found.entry, length,
+                             found.kink);
+  }
+
+  /// Gives up what is left of the lanes' rays.
+  void drop(M lanes) noexcept { ahead_.drop(lanes); }
+
  private:
-  const PacketGrid& grid_;
-  const PacketLight& light_;
-  GradientLoads<N> loads_;
+  LightLanes(const PacketGrid& grid, const PacketLight& light, const Vec3<F>& to_eye) noexcept
+      : SpanLight<N>(light, to_eye), ahead_(grid, light, to_eye) {}
+
+  SpanGradients<N> ahead_;
 };
 
 }  // namespace pellucid

@@ -33,6 +33,8 @@ namespace pellucid {
 /// integrates a cell by other means leaves it.
 template <int N, bool is_lit = false>
 class PacketIntegrator {
+  struct Unlit {};
+
  public:
   static constexpr int lane_count = N;
   using F = Batch<float, N>;
@@ -43,6 +45,7 @@ class PacketIntegrator {
   /// Workspace that many packets use one after the other.
   struct Workspace : SpanWorkspace<N> {
     StepTable<N> step_lengths;
+    std::conditional_t<is_lit, SpanWays<N>, Unlit> ways;
   };
 
   /// Prepares for rays first … first + count - 1 of the job, count <= N.
@@ -55,7 +58,7 @@ class PacketIntegrator {
         first_(first),
         count_(count),
         blocks_(grid, job.rays + first, count),
-        finder_(grid, blocks_, transfer_, is_lit),
+        finder_(grid, blocks_, transfer_, is_lit, ways_of(workspace)),
         light_(make_light(job, grid, blocks_)),
         surfaces_(make_surfaces(job)),
         smooth_(job, grid, blocks_.origin, blocks_.direction, workspace.step_lengths),
@@ -77,6 +80,7 @@ class PacketIntegrator {
     while (any(blocks_.alive)) {
       find_spans();
       queue_.begin(workspace_.rows);
+      if constexpr (is_lit) light_.begin(workspace_, workspace_.ways);
       for (take_spans(); any(pending_); take_spans()) integrate_spans();
       sample_smooth();
     }
@@ -112,7 +116,6 @@ class PacketIntegrator {
   }
 
  private:
-  struct Unlit {};
   using Light = std::conditional_t<is_lit, LightLanes<N>, Unlit>;
   using Like = std::conditional_t<is_lit, LikeErrors<F>, Unlit>;
   using Surfaces = std::conditional_t<is_lit, SurfaceLanes<N>, Unlit>;
@@ -123,6 +126,14 @@ class PacketIntegrator {
       return Light(grid, *seen(job.light), rays);
     } else {
       return {};
+    }
+  }
+
+  static SpanWays<N>* ways_of(Workspace& workspace) noexcept {
+    if constexpr (is_lit) {
+      return &workspace.ways;
+    } else {
+      return nullptr;
     }
   }
 
@@ -175,13 +186,10 @@ class PacketIntegrator {
     const M in_double = lanes & has(PackedSpanInfo::in_double);
     if (any(in_double)) wait_for_double(in_double);
     if constexpr (is_lit) {
+      scalar_fallback_ = scalar_fallback_ | light_.take(lanes, row[5]);
       if (surfaces_.exist()) {
         close_ = select(lanes, surfaces_.close(single_.data, row[4], place_error_, row[5]), close_);
         fail(surfaces_.come_to(lanes, single_.data.b[0], close_));
-      }
-      const M begun = lanes & !scalar_fallback_;
-      if (any(begun)) {
-        scalar_fallback_ = scalar_fallback_ | light_.begin(begun, places_of(begun, code_));
       }
     }
     constant_ += select(lanes & whole_block_, I(1), I(0));
@@ -197,6 +205,7 @@ class PacketIntegrator {
     pending_ = pending_ & !lanes;
     not_begun_ = not_begun_ & !lanes;
     queue_.drop(lanes);
+    if constexpr (is_lit) light_.drop(lanes);
   }
 
   /// Goes through blocks that were taken for one span after all.

@@ -23,6 +23,16 @@ struct SpanRows {
   std::int32_t first[N][BlockIntervals<N>::of_a_ray], end[N][BlockIntervals<N>::of_a_ray];
 };
 
+/// Places [0,1]³ at which rays enter and leave the cells of spans: of each what SpanRows has in the
+/// same row.
+template <int N>
+struct SpanWays {
+  static constexpr int fields = 8;
+
+  /// Entry x, y, z; exit x, y, z; two that are not used.
+  float row[(BlockIntervals<N>::most + 1) * SpanRows<N>::of_a_stretch * fields];
+};
+
 /// Further facts of a span, in a whole number that a float holds exactly: the sum of these.
 struct PackedSpanInfo {
   static constexpr int cell[3] = {1, 8, 64};   ///< times its place in the block
@@ -56,9 +66,10 @@ class SpanFinder {
   using Rows = SpanRows<N>;
 
   /// `lit`: blocks of one material are gone through cell by cell, for light changes in them.
+  /// `ways`: where the places of spans are put, if they are wanted.
   SpanFinder(const PacketGrid& grid, const BlockMarch<N>& rays, const BinnedTransfer& transfer,
-             bool lit = false) noexcept
-      : transfer_(transfer), list_(grid, rays), cells_(grid, rays), lit_(lit) {}
+             bool lit = false, SpanWays<N>* ways = nullptr) noexcept
+      : transfer_(transfer), list_(grid, rays), cells_(grid, rays), lit_(lit), ways_(ways) {}
 
   /// Looks at data of this type. Adds to `cells` those looked at, per ray.
   template <class Value>
@@ -167,6 +178,12 @@ class SpanFinder {
                       code};
     // Of lanes that found nothing too: behind their last row.
     store_records<Rows::fields>(span, rows.row, row_);
+    if (ways_ != nullptr) {
+      const Vec3<F> entry = cells_.place_in_cell(step, step.begin);
+      const Vec3<F> exit = cells_.place_in_cell(step, step.end);
+      const F way[] = {entry.x, entry.y, entry.z, exit.x, exit.y, exit.z, F(0), F(0)};
+      store_records<SpanWays<N>::fields>(way, ways_->row, row_);
+    }
     row_ += select(found, I(1), I(0));
   }
 
@@ -258,6 +275,7 @@ class SpanFinder {
   BlockSegmentList<N> list_;
   CellMarch<N> cells_;
   bool lit_;
+  SpanWays<N>* ways_;
   typename CellMarch<N>::Step step_;
   I row_;   ///< that each lane's next span goes to
   I seen_;  ///< cells of the lane's stretch

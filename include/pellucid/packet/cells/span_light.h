@@ -124,7 +124,7 @@ class SpanLight {
 
   /// `to_eye`: the directions from which the lanes' rays come, of length 1.
   SpanLight(const PacketLight& light, const Vec3<F>& to_eye) noexcept
-      : light_(light), to_eye_(to_eye) {
+      : to_eye_(to_eye), light_(light) {
     const Reflection<float>& r = light.reflection;
     float brightest = r.ambient;
     for (int i = 0; i < light.lights; ++i) {
@@ -138,13 +138,9 @@ class SpanLight {
   /// there are point lights. Returns the lanes in which one of these is too near for nodes.
   M begin(M lanes, const CubicBernstein<F> (&gradient)[3], const CubicBernstein<F>& magnitude,
           const Vec3<F>& entry, F length) noexcept {
-    for (int k = 0; k < 4; ++k) {
-      for (int c = 0; c < 3; ++c) {
-        gradient_[c].b[k] = select(lanes, gradient[c].b[k], gradient_[c].b[k]);
-      }
-      magnitude_.b[k] = select(lanes, magnitude.b[k], magnitude_.b[k]);
-    }
-    return begin_loaded(lanes, entry, length);
+    const M near = begin_kinks(lanes, gradient, entry, length);
+    if (light_.factor != nullptr) begin_factor(lanes, magnitude);
+    return near;
   }
 
   bool has_factor() const noexcept { return light_.factor != nullptr; }
@@ -309,34 +305,51 @@ class SpanLight {
   }
 
  protected:
-  /// Begins spans whose gradients are there, in gradient_ and magnitude_.
-  [[gnu::noinline]] M begin_loaded(M lanes, const Vec3<F>& entry, F length) noexcept {
+  /// begin() but for the magnitude.
+  M begin_kinks(M lanes, const CubicBernstein<F> (&gradient)[3], const Vec3<F>& entry,
+                F length) noexcept {
+    begin_gradients(lanes, gradient, entry, length);
     M near(false);
-    if (light_.points > 0) {
-      for (int c = 0; c < 3; ++c) entry_[c] = select(lanes, entry[c], entry_[c]);
-      length_ = select(lanes, length, length_);
-      near = lanes & (distance_to_lights() < F(nearest_light) * length_);
-    }
+    if (light_.points > 0) near = lanes & (distance_to_lights() < F(nearest_light) * length_);
     kink_ = select(lanes, next_kink(lanes, F(0)), kink_);
-    if (light_.factor != nullptr) {
-      const F largest = max(abs(magnitude_.hull_min()), abs(magnitude_.hull_max()));
-      const F error = F(32 * rounding_unit<float> + gradient_rounding<float>) * largest;
-      magnitude_error_ = select(lanes, error, magnitude_error_);
-      factor_ = find_extinction(*light_.factor, magnitude_.b[0], lanes, interval_);
-      find_factor_end(lanes, F(0));
-    }
     return near;
   }
+  /// begin() where the first kink is known; -1 where a point light is too near.
+  M begin_known(M lanes, const CubicBernstein<F> (&gradient)[3], const CubicBernstein<F>& magnitude,
+                const Vec3<F>& entry, F length, F kink) noexcept {
+    begin_gradients(lanes, gradient, entry, length);
+    kink_ = select(lanes, kink, kink_);
+    if (light_.factor != nullptr) begin_factor(lanes, magnitude);
+    return lanes & (kink < F(0));
+  }
 
-  const PacketLight& light_;
-  CubicBernstein<F> gradient_[3];
-  CubicBernstein<F> magnitude_;  ///< if there is a factor of it
+  Vec3<F> to_eye_;
 
  private:
   using Kind = LightSource<float>::Kind;
   using I = Batch<std::int32_t, N>;
   /// Least distance of a point light, in lengths of the way through the cell.
   static constexpr float nearest_light = 8;
+
+  void begin_gradients(M lanes, const CubicBernstein<F> (&gradient)[3], const Vec3<F>& entry,
+                       F length) noexcept {
+    for (int c = 0; c < 3; ++c) {
+      for (int k = 0; k < 4; ++k) {
+        gradient_[c].b[k] = select(lanes, gradient[c].b[k], gradient_[c].b[k]);
+      }
+    }
+    if (light_.points == 0) return;
+    for (int c = 0; c < 3; ++c) entry_[c] = select(lanes, entry[c], entry_[c]);
+    length_ = select(lanes, length, length_);
+  }
+  [[gnu::noinline]] void begin_factor(M lanes, const CubicBernstein<F>& magnitude) noexcept {
+    for (int k = 0; k < 4; ++k) magnitude_.b[k] = select(lanes, magnitude.b[k], magnitude_.b[k]);
+    const F largest = max(abs(magnitude_.hull_min()), abs(magnitude_.hull_max()));
+    const F error = F(32 * rounding_unit<float> + gradient_rounding<float>) * largest;
+    magnitude_error_ = select(lanes, error, magnitude_error_);
+    factor_ = find_extinction(*light_.factor, magnitude_.b[0], lanes, interval_);
+    find_factor_end(lanes, F(0));
+  }
 
   /// Returns the extinction at u of a piece, where the data have this value.
   F extinction(const SpanLanes<float, N>& span, F value, F u) const noexcept {
@@ -475,8 +488,10 @@ class SpanLight {
         });
   }
 
-  Vec3<F> to_eye_;
-  float inverse_light_;  ///< 1 / the brightest factor of a color
+  const PacketLight& light_;
+  CubicBernstein<F> gradient_[3];
+  CubicBernstein<F> magnitude_;  ///< if there is a factor of it
+  float inverse_light_;          ///< 1 / the brightest factor of a color
   // Of the lanes' cells, if there is a factor of the magnitude:
   F magnitude_error_{0};          ///< what it may be off by
   I interval_{0};                 ///< of the factor, in which the next piece is
