@@ -32,6 +32,9 @@ set(_pellucid_flags_sse4 -msse4.1)
 set(_pellucid_flags_avx2 -mavx2 -mfma)
 set(_pellucid_flags_avx512 -mavx512f -mavx512cd -mavx512dq -mavx512bw -mavx512vl -mfma
     -mprefer-vector-width=512)
+# Since GCC 12: batches are copied by whole registers. By halves of them, its default for AVX2, a
+# load of the whole waits until both are written.
+set(_pellucid_gcc_12_flags_avx2 -mmove-max=256 -mstore-max=256)
 set(_pellucid_flags_neon64)  # every AArch64 processor has it
 set(_pellucid_flags_wasm128 -msimd128 -msse4.1)  # SSE's functions by WebAssembly's instructions
 
@@ -136,9 +139,11 @@ function(pellucid_instruction_sets target)
       pellucid=pellucid_${set}
       PELLUCID_INSTRUCTION_SET=${set}
       PELLUCID_LANES=${_pellucid_lanes_${set}})
+    set(since_gcc_12 $<AND:$<CXX_COMPILER_ID:GNU>,$<NOT:$<VERSION_LESS:$<CXX_COMPILER_VERSION>,12>>>)
     set(gcc_12 $<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>)
     target_compile_options(${objects} PRIVATE
       ${_pellucid_flags_${set}}
+      "$<${since_gcc_12}:${_pellucid_gcc_12_flags_${set}}>"
       # Optimised in every configuration: batches that are not kept in registers are of no use, and
       # the standard library's small functions must be inlined, not left to the linker.
       $<$<CONFIG:Debug>:-O2>
