@@ -156,24 +156,29 @@ struct GradientStretch {
   /// Returns bounds on the square of its length: the hull of the Bernstein coefficients of degree
   /// 6, B_k = Σ_{i+j=k} C(3,i) C(3,j) / C(6,k) a_i b_j, and what the components' own hulls say.
   PELLUCID_HD Bounds<T> square() const noexcept {
-    T sum[7]{}, least = T(0);
-    for (const CubicBernstein<T>& f : component) {
-      const T* b = f.b;
-      sum[0] += b[0] * b[0];
-      sum[1] += b[0] * b[1];
-      sum[2] += T(0.4) * (b[0] * b[2]) + T(0.6) * (b[1] * b[1]);
-      sum[3] += T(0.1) * (b[0] * b[3]) + T(0.9) * (b[1] * b[2]);
-      sum[4] += T(0.4) * (b[1] * b[3]) + T(0.6) * (b[2] * b[2]);
-      sum[5] += b[2] * b[3];
-      sum[6] += b[3] * b[3];
+    const auto sum = [this](auto&& of) noexcept {
+      return of(component[0]) + of(component[1]) + of(component[2]);
+    };
+    using Cubic = CubicBernstein<T>;
+    const T s0 = sum([](const Cubic& f) noexcept { return f.b[0] * f.b[0]; });
+    const T s1 = sum([](const Cubic& f) noexcept { return f.b[0] * f.b[1]; });
+    const T s2 = sum([](const Cubic& f) noexcept {
+      return T(0.4) * (f.b[0] * f.b[2]) + T(0.6) * (f.b[1] * f.b[1]);
+    });
+    const T s3 = sum([](const Cubic& f) noexcept {
+      return T(0.1) * (f.b[0] * f.b[3]) + T(0.9) * (f.b[1] * f.b[2]);
+    });
+    const T s4 = sum([](const Cubic& f) noexcept {
+      return T(0.4) * (f.b[1] * f.b[3]) + T(0.6) * (f.b[2] * f.b[2]);
+    });
+    const T s5 = sum([](const Cubic& f) noexcept { return f.b[2] * f.b[3]; });
+    const T s6 = sum([](const Cubic& f) noexcept { return f.b[3] * f.b[3]; });
+    const T least = sum([](const Cubic& f) noexcept {
       const T nearest = max(max(f.hull_min(), -f.hull_max()), T(0));
-      least += nearest * nearest;
-    }
-    Bounds<T> result{sum[0], sum[0]};
-    for (const T& s : sum) {
-      result.lower = min(result.lower, s);
-      result.upper = max(result.upper, s);
-    }
+      return nearest * nearest;
+    });
+    Bounds<T> result{min(min(min(s0, s1), min(s2, s3)), min(min(s4, s5), s6)),
+                     max(max(max(s0, s1), max(s2, s3)), max(max(s4, s5), s6))};
     result.lower = max(max(result.lower, least) * (T(1) - T(16) * T(rounding_unit<T>)), T(0));
     result.upper *= T(1) + T(16) * T(rounding_unit<T>);
     return result;

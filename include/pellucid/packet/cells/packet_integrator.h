@@ -117,6 +117,7 @@ class PacketIntegrator {
 
  private:
   using Light = std::conditional_t<is_lit, LightLanes<N>, Unlit>;
+  using LitPiece = std::conditional_t<is_lit, LightOfPiece<N>, Unlit>;
   using Like = std::conditional_t<is_lit, LikeErrors<F>, Unlit>;
   using Surfaces = std::conditional_t<is_lit, SurfaceLanes<N>, Unlit>;
 
@@ -365,7 +366,8 @@ class PacketIntegrator {
     SegmentResult<F>& s = piece.found.segment;
     const F to = min(from + ahead * piece.place, F(1));
     if (light_.has_factor()) light_.weaken(piece, from, to, single_, largest_color_);
-    const LightOfPiece<N> lit = light_.measure(piece, from, to, transfer_);
+    light_.measure(piece, from, to, transfer_, lit_);
+    const LightOfPiece<N>& lit = lit_;
     const F length = piece.length, left = left_behind(from);
     compositor_.budget.set_remaining_length(
         select(on, left, compositor_.budget.remaining_length()));
@@ -563,6 +565,7 @@ class PacketIntegrator {
   BlockMarch<N> blocks_;
   SpanFinder<N> finder_;
   Light light_;
+  LitPiece lit_;  ///< of the pieces that lanes work on
   Surfaces surfaces_;
   SmoothMarch<N> smooth_;
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "pellucid/error/random_errors.h"
+#include "pellucid/packet/cells/nodes_of_lanes.h"
 #include "pellucid/packet/cells/span_piece.h"
 #include "pellucid/packet/light.h"
-#include "pellucid/segment/cubic_panel.h"
 #include "pellucid/segment/gauss_panel.h"
 
 #if PELLUCID_HAS_BATCH_4  // in sources compiled per instruction set
@@ -51,67 +51,6 @@ class NodeDeviations {
   }
 
   F turns_, sharpness_, range_, depth_;
-};
-
-/// Three Gauss nodes on [0,1] in some lanes, six in the others.
-template <int N>
-class NodesOfLanes {
- public:
-  using F = Batch<float, N>;
-  using M = BatchMask<N>;
-
-  explicit NodesOfLanes(M more) noexcept : more_(more), any_more_(any(more)) {}
-
-  /// Calls visit(j) for each node. In lanes of three nodes the others weigh nothing.
-  template <class Visit>
-  void for_each(const Visit& visit) const noexcept {
-    for (int j = 0; j < 3; ++j) visit(j);
-    if (!any_more_) return;
-    for (int j = 3; j < 6; ++j) visit(j);
-  }
-
-  F weight(int j) const noexcept {
-    return j < 3 ? of_rules(few_.weight[j], many_.weight[j]) : of_rules(0, many_.weight[j]);
-  }
-  F position(int j) const noexcept { return of_rules(few_.position[j % 3], many_.position[j]); }
-  /// Returns a cubic of these Bernstein coefficients at a node.
-  F value(int j, const F (&b)[4]) const noexcept { return dot(few_.basis, many_.basis, j, b); }
-  /// Returns its integral from 0 to the node.
-  F integral(int j, const F (&b)[4]) const noexcept {
-    return dot(few_.integral, many_.integral, j, b);
-  }
-  /// Returns the depth at a node from the rates at all of them, as depth_to_node().
-  F collocated(int j, const F (&rate)[6]) const noexcept {
-    static constexpr auto few = gauss_legendre<float, 3>();
-    static constexpr auto many = gauss_legendre<float, 6>();
-    F depth(0);
-    for_each([&](int k) noexcept {
-      const float of_few = k < 3 ? few.collocation[j % 3][k] : 0.0f;
-      depth += of_rules(of_few, many.collocation[j][k]) * rate[k];
-    });
-    return depth;
-  }
-
- private:
-  static constexpr CubicNodes<float, 3> few_{};
-  static constexpr CubicNodes<float, 6> many_{};
-
-  F of_rules(float of_few, float of_many) const noexcept {
-    return any_more_ ? select(more_, F(of_many), F(of_few)) : F(of_few);
-  }
-  F dot(const float (&few)[3][4], const float (&many)[6][4], int j,
-        const F (&b)[4]) const noexcept {
-    if (!any_more_) return dot(few[j], b);
-    if (j >= 3) return dot(many[j], b);
-    return select(more_, dot(many[j], b), dot(few[j], b));
-  }
-  static F dot(const float (&a)[4], const F (&b)[4]) noexcept {
-    return multiply_add(F(a[0]), b[0], F(a[3]) * b[3]) +
-           multiply_add(F(a[1]), b[1], F(a[2]) * b[2]);
-  }
-
-  M more_;
-  bool any_more_;
 };
 
 /// The light of the spans that lanes work on.
@@ -192,20 +131,19 @@ class SpanLight {
   /// Bounds the light on a piece, the share [from, to] of its cell. Transfer: a BinnedTransfer, or
   /// several.
   template <class Transfer>
-  [[gnu::noinline]] LightOfPiece<N> measure(const SpanPiece<float, N>& piece, F from, F to,
-                                            const Transfer& transfer) const noexcept {
+  [[gnu::noinline]] void measure(const SpanPiece<float, N>& piece, F from, F to,
+                                 const Transfer& transfer, LightOfPiece<N>& result) const noexcept {
     // The range of the table's colors within the piece.
     const F change = min(piece.spread.range, piece.spread.slope * range_of(piece.seen));
-    return measure(change, piece.spread.kinks, F(transfer.largest_color), from, to);
+    measure(change, piece.spread.kinks, F(transfer.largest_color), from, to, result);
   }
   /// Bounds the light on colors up to `largest` that differ by `change`; `kinks`: their error.
-  [[gnu::flatten, gnu::noinline]] LightOfPiece<N> measure(F change, F kinks, F largest, F from,
-                                                          F to) const noexcept {
-    LightOfPiece<N> result;
-    result.along = along(from, to);
+  [[gnu::flatten, gnu::noinline]] void measure(F change, F kinks, F largest, F from, F to,
+                                               LightOfPiece<N>& result) const noexcept {
+    set_along(from, to, result.along);
     const Bounds<F> squares = result.along.square();
-    const LitBounds<F> bounds =
-        light_bounds(light_.reflection, light_.light, light_.lights, result.along, squares);
+    LitBounds<F>& bounds = result.bounds;
+    bounds = light_bounds(light_.reflection, light_.light, light_.lights, result.along, squares);
     // The range of the colors: of those without light, of light's factors and addends.
     const F brightest = largest_component(bounds.upper.factor);
     const F range = brightest * change +
@@ -218,7 +156,6 @@ class SpanLight {
     result.range = range;
     result.turns = turns;
     result.sharpness = bounds.sharpness;
-    result.bounds = bounds;
     result.color_error =
         brightest * kinks + color_rounding(light_.reflection, light_.light, light_.lights, squares,
                                            largest, F(gradient_rounding<float>));
@@ -233,7 +170,6 @@ class SpanLight {
             (largest_component(bounds.lower.factor) + largest_component(bounds.lower.added)),
         F(inverse_light_) * range};
     result.signs = LikeErrors<F>::signs(feature);
-    return result;
   }
 
   /// Returns what light makes of colors at u of a piece.
@@ -261,45 +197,53 @@ class SpanLight {
                                                const BinnedTransfer& transfer,
                                                ColorInterval<F>& known) const noexcept {
     const NodesOfLanes<N> nodes(more);
-    F rate[6], depth[6];
-    if (light_.factor == nullptr) {
-      const ExtinctionInterval<F>& interval = span.extinction;
-      F end[4];
-      for (int k = 0; k < 4; ++k) {
-        end[k] = piece.length *
-                 (interval.at_lower + interval.slope * (piece.parts.front.b[k] - interval.lower));
+    const F(&data)[4] = piece.parts.front.b;
+    const CubicBernstein<F>(&g)[3] = of.along.component;
+    const ExtinctionInterval<F>& interval = span.extinction;
+    const bool weakened = light_.factor != nullptr;
+    F end[4];  // rates of the coefficients
+    for (int k = 0; k < 4; ++k) {
+      end[k] = piece.length * (interval.at_lower + interval.slope * (data[k] - interval.lower));
+    }
+    // Plain numbers: an array of batches would be set to 0 first.
+    float rate[6][N], depth[6][N], lit_color[3][6][N];
+    nodes.for_each([&](int j) noexcept {
+      const typename NodesOfLanes<N>::Weights at = nodes.value_weights(j);
+      const F value = at.sum(data);
+      if (weakened) {
+        (piece.length * extinction(span, value, nodes.position(j))).store(rate[j]);
+      } else {
+        max(at.sum(end), F(0)).store(rate[j]);
+        nodes.integral_weights(j).sum(end).store(depth[j]);
       }
-      nodes.for_each([&](int j) noexcept {
-        rate[j] = max(nodes.value(j, end), F(0));
-        depth[j] = nodes.integral(j, end);
-      });
-    } else {
-      nodes.for_each([&](int j) noexcept {
-        const F value = nodes.value(j, piece.parts.front.b);
-        rate[j] = piece.length * extinction(span, value, nodes.position(j));
-      });
-      nodes.for_each([&](int j) noexcept { depth[j] = nodes.collocated(j, rate); });
+      const Rgb<F> unlit = color_at(
+          transfer, clamp(value, piece.seen.color_lower, piece.seen.color_upper), lanes, known);
+      const Vec3<F> gradient{at.sum(g[0].b), at.sum(g[1].b), at.sum(g[2].b)};
+      const Vec3<F> position =
+          light_.points > 0 ? of.along.position(nodes.position(j)) : Vec3<F>{F(0), F(0), F(0)};
+      const Rgb<F> color =
+          light_up(light_.reflection, light_.light, light_.lights, gradient, position, to_eye_)
+              .apply(unlit);
+      color.r.store(lit_color[0][j]);
+      color.g.store(lit_color[1][j]);
+      color.b.store(lit_color[2][j]);
+    });
+    if (weakened) {
+      nodes.for_each([&](int j) noexcept { nodes.collocated(j, rate).store(depth[j]); });
     }
     // As panel_color().
     F origin(std::numeric_limits<float>::max());
-    nodes.for_each(
-        [&](int j) noexcept { origin = min(origin, select(rate[j] > F(0), depth[j], origin)); });
+    nodes.for_each([&](int j) noexcept {
+      origin = min(origin, select(F::load(rate[j]) > F(0), F::load(depth[j]), origin));
+    });
     F sum(0);
     Rgb<F> color{};
     nodes.for_each([&](int j) noexcept {
-      const F value = clamp(nodes.value(j, piece.parts.front.b), piece.seen.color_lower,
-                            piece.seen.color_upper);
-      const Rgb<F> unlit = color_at(transfer, value, lanes, known);
-      const CubicBernstein<F>(&g)[3] = of.along.component;
-      const Vec3<F> gradient{nodes.value(j, g[0].b), nodes.value(j, g[1].b),
-                             nodes.value(j, g[2].b)};
-      const Vec3<F> position =
-          light_.points > 0 ? of.along.position(nodes.position(j)) : Vec3<F>{F(0), F(0), F(0)};
-      const Lit<F> lit =
-          light_up(light_.reflection, light_.light, light_.lights, gradient, position, to_eye_);
-      const F weight = nodes.weight(j) * rate[j] * exp(min(origin - depth[j], F(0)));
+      const F weight =
+          nodes.weight(j) * F::load(rate[j]) * exp(min(origin - F::load(depth[j]), F(0)));
       sum += weight;
-      color += weight * lit.apply(unlit);
+      color += weight *
+               Rgb<F>{F::load(lit_color[0][j]), F::load(lit_color[1][j]), F::load(lit_color[2][j])};
     });
     return (F(1) / select(sum > F(0), sum, F(1))) * color;
   }
@@ -370,26 +314,27 @@ class SpanLight {
     factor_known_ = (factor_known_ & !lanes) | (lanes & end.found);
   }
 
-  /// The gradients on the share [from, to] of the lanes' cells.
-  GradientStretch<F> along(F from, F to) const noexcept {
-    GradientStretch<F> result{{gradient_[0], gradient_[1], gradient_[2]}, {}, F(0), to_eye_};
+  /// Sets the gradients on the share [from, to] of the lanes' cells.
+  void set_along(F from, F to, GradientStretch<F>& result) const noexcept {
     // By two cuts, whose rounding is part of gradient_rounding. At 1 a cut does not give the same
     // to the bit.
     const F beginning = from / max(to, F(smallest_normal<float>));
     const M ends = to < F(1);
     const bool cuts_end = any(ends), cuts_beginning = any(from > F(0));
-    for (CubicBernstein<F>& f : result.component) {
+    for (int c = 0; c < 3; ++c) {
+      CubicBernstein<F>& f = result.component[c];
+      for (int k = 0; k < 4; ++k) f.b[k] = gradient_[c].b[k];
       if (cuts_end) {
         const CubicBernstein<F> front = cut(f, to).front;
         for (int k = 0; k < 4; ++k) f.b[k] = select(ends, front.b[k], f.b[k]);
       }
       if (cuts_beginning) f = cut(f, beginning).back;
     }
+    result.to_eye = to_eye_;
     if (light_.points > 0) {
       result.middle = entry_ - to_eye_ * (F(0.5f) * (from + to) * length_);
       result.half_length = F(0.5f) * (to - from) * length_;
     }
-    return result;
   }
 
   static Vec3<F> place_of(const LightSource<float>& light) noexcept {
@@ -446,7 +391,9 @@ class SpanLight {
     };
     for (int i = 0; i < light_.lights; ++i) {
       if (light_.light[i].kind == Kind::point) {
-        look_at_point(along(from, F(1)), light_.light[i], look_at);
+        GradientStretch<F> left;
+        set_along(from, F(1), left);
+        look_at_point(left, light_.light[i], look_at);
         continue;
       }
       const LightDirections<F> to = directions(light_.light[i], Vec3<F>{}, to_eye_);

@@ -455,7 +455,7 @@ class LayeredPacket {
         return select(any_colors, c, Rgb<F>{F(0), F(0), F(0)});
       };
       const Rgb<F> upper = shown(colors.upper);
-      layer.lit = layer.light.measure(colors.range, F(0), largest_component(upper), from_, to);
+      layer.light.measure(colors.range, F(0), largest_component(upper), from_, to, layer.lit);
       colors = {layer.lit.bounds.lower.apply(shown(colors.lower)),
                 layer.lit.bounds.upper.apply(upper), layer.lit.range, layer.lit.color_error};
       sum.light_up(here, layer.lit);
@@ -483,7 +483,7 @@ class LayeredPacket {
       if (layer.light.has_factor()) {
         layer.light.weaken(piece, from_, to, layer.span, largest_color_);
       }
-      layer.lit = layer.light.measure(piece, from_, to, layer.transfers);
+      layer.light.measure(piece, from_, to, layer.transfers, layer.lit);
       const LightOfPiece<N>& lit = layer.lit;
       lower = lit.bounds.lower.apply(lower);
       upper = lit.bounds.upper.apply(upper);
