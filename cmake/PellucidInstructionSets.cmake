@@ -139,7 +139,8 @@ function(pellucid_instruction_sets target)
       pellucid=pellucid_${set}
       PELLUCID_INSTRUCTION_SET=${set}
       PELLUCID_LANES=${_pellucid_lanes_${set}})
-    set(since_gcc_12 $<AND:$<CXX_COMPILER_ID:GNU>,$<NOT:$<VERSION_LESS:$<CXX_COMPILER_VERSION>,12>>>)
+    set(since_gcc_12
+        $<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,12>>)
     set(gcc_12 $<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>)
     target_compile_options(${objects} PRIVATE
       ${_pellucid_flags_${set}}

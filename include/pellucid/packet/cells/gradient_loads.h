@@ -31,7 +31,7 @@ class GradientLoads {
                        convert<float>(places.exit.z)};
     (*this)(lanes, places.cell, entry, exit, gradient, magnitude);
   }
-  /// The same of ways from `entry` to `exit`, places [0,1]³ in the cells.
+  /// Loads the same of ways from `entry` to `exit`, places [0,1]³ in the cells.
   void operator()(M lanes, const Batch<std::int32_t, N> (&cell)[3], const Vec3<F>& entry,
                   const Vec3<F>& exit, CubicBernstein<F> (&gradient)[3],
                   CubicBernstein<F>& magnitude) const noexcept {

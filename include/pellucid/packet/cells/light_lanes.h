@@ -46,9 +46,9 @@ class LightLanes : public SpanLight<N> {
   /// Begins the next spans of the lanes' rays, of these world lengths. Returns the lanes in which a
   /// point light is too near for nodes.
   M take(M lanes, F length) noexcept {
-    const typename SpanGradients<N>::Found found = ahead_.take(lanes);
-    return this->begin_known(lanes, found.gradient, found.magnitude, found.entry, length,
-                             found.kink);
+    ahead_.take(lanes, found_);
+    return this->begin_known(lanes, found_.gradient, found_.magnitude, found_.entry, length,
+                             found_.kink);
   }
 
   /// Gives up what is left of the lanes' rays.
@@ -59,6 +59,7 @@ class LightLanes : public SpanLight<N> {
       : SpanLight<N>(light, to_eye), ahead_(grid, light, to_eye) {}
 
   SpanGradients<N> ahead_;
+  typename SpanGradients<N>::Found found_;
 };
 
 }  // namespace pellucid

@@ -117,7 +117,8 @@ class PacketIntegrator {
 
  private:
   using Light = std::conditional_t<is_lit, LightLanes<N>, Unlit>;
-  using LitPiece = std::conditional_t<is_lit, LightOfPiece<N>, Unlit>;
+  using LitPiece = std::conditional_t<is_lit, SpanPiece<float, N>, Unlit>;
+  using PieceLight = std::conditional_t<is_lit, LightOfPiece<N>, Unlit>;
   using Like = std::conditional_t<is_lit, LikeErrors<F>, Unlit>;
   using Surfaces = std::conditional_t<is_lit, SurfaceLanes<N>, Unlit>;
 
@@ -167,7 +168,7 @@ class PacketIntegrator {
   /// Gives the lanes without a span the next one of their ray, if there is any.
   [[gnu::flatten]] void take_spans() noexcept {
     using Rows = SpanRows<N>;
-    F row[Rows::fields];
+    F(&row)[Rows::fields] = row_;
     const M lanes = queue_.take(!pending_, workspace_.rows, row);
     if (none(lanes)) return;
     const I code = convert<std::int32_t>(row[7]);
@@ -362,7 +363,9 @@ class PacketIntegrator {
     const F up_to_kink = (kink - from) / select(before, ahead, F(1));
     const M to_kink = before & (up_to_kink < single_.cap);
     single_.cap = select(to_kink, up_to_kink, single_.cap);
-    SpanPiece<float, N> piece = next_piece(single_, transfer_, on, place_error_, largest_color_);
+    SpanPiece<float, N>& piece = lit_piece_;
+    begin_piece(single_, transfer_, on, piece);
+    finish_piece(single_, transfer_, on, place_error_, largest_color_, piece);
     SegmentResult<F>& s = piece.found.segment;
     const F to = min(from + ahead * piece.place, F(1));
     if (light_.has_factor()) light_.weaken(piece, from, to, single_, largest_color_);
@@ -565,11 +568,14 @@ class PacketIntegrator {
   BlockMarch<N> blocks_;
   SpanFinder<N> finder_;
   Light light_;
-  LitPiece lit_;  ///< of the pieces that lanes work on
+  // The pieces that lanes work on, and their light.
+  LitPiece lit_piece_;
+  PieceLight lit_;
   Surfaces surfaces_;
   SmoothMarch<N> smooth_;
 
   SpanQueue<N> queue_;
+  F row_[SpanRows<N>::fields];  ///< that lanes took last
 
   // The span that a lane works on.
   M pending_{false};

@@ -36,15 +36,15 @@ class SpanGradients : private SpanLight<N> {
   using I = Batch<std::int32_t, N>;
   using M = BatchMask<N>;
 
-  /// What lanes are given of their spans.
+  /// Gradients of the spans of lanes.
   struct Found {
     CubicBernstein<F> gradient[3];  ///< in the world, along the lanes' ways through their cells
     CubicBernstein<F> magnitude;    ///< if there is a factor of it
-    F kink;                         ///< as SpanLight::kink() of the first piece
-    Vec3<F> entry;  ///< where they begin, from PacketLight's origin, if there are point lights
+    F kink;                         ///< SpanLight::kink() of the first piece; -1: light too near
+    Vec3<F> entry;  ///< places of entry, from PacketLight's origin, if there are point lights
   };
 
-  /// `to_eye`: as of SpanLight, of the lanes' own rays.
+  /// Prepares for rays that come from these directions, of length 1.
   SpanGradients(const PacketGrid& grid, const PacketLight& light, const Vec3<F>& to_eye) noexcept
       : SpanLight<N>(light, to_eye), grid_(grid), light_(light), loads_(grid, light) {
     for (int c = 0; c < 3; ++c) to_eye[c].store(eye_of_ray_[c]);
@@ -59,19 +59,17 @@ class SpanGradients : private SpanLight<N> {
   }
 
   /// Takes the next span of each of the lanes' rays, as SpanQueue::take().
-  Found take(M lanes) noexcept {
+  void take(M lanes, Found& found) noexcept {
     if (any(lanes & (ready_ < I(1)))) compute();
     const I slot = slots_of_rays() + first_;
     ready_ -= select(lanes, I(1), I(0));
     first_ = select(lanes, (first_ + I(1)) & I(depth - 1), first_);
     F fields[field_count];
     load_records<field_count>(record_, slot, fields);
-    Found found;
     for (int k = 0; k < 12; ++k) found.gradient[k / 4].b[k % 4] = fields[k];
     found.kink = fields[12];
     found.entry = {fields[13], fields[14], fields[15]};
     if (light_.factor != nullptr) load_records<4>(magnitude_of_, slot, found.magnitude.b);
-    return found;
   }
 
   /// Gives up what is left of the lanes' rays.
@@ -139,7 +137,8 @@ class SpanGradients : private SpanLight<N> {
                 PackedSpanInfo::place_in_block(code, a);
     }
     const Vec3<F> entry{way[0], way[1], way[2]}, exit{way[3], way[4], way[5]};
-    CubicBernstein<F> gradient[3], magnitude;
+    CubicBernstein<F>(&gradient)[3] = this->gradient_;
+    CubicBernstein<F> magnitude;
     loads_(lanes, cell, entry, exit, gradient, magnitude);
     for (int c = 0; c < 3; ++c) this->to_eye_[c] = lookup(eye_of_ray_[c], ray);
     Vec3<F> in_world{F(0), F(0), F(0)};
@@ -149,7 +148,7 @@ class SpanGradients : private SpanLight<N> {
                          Vec3<Batch<double, N>>{convert<double>(entry.x), convert<double>(entry.y),
                                                 convert<double>(entry.z)});
     }
-    const M near = this->begin_kinks(lanes, gradient, in_world, span[5]);
+    const M near = this->begin_loaded(lanes, in_world, span[5]);
     F fields[field_count];
     for (int k = 0; k < 12; ++k) fields[k] = gradient[k / 4].b[k % 4];
     fields[12] = select(near, F(-1), this->kink());

@@ -249,25 +249,32 @@ class SpanLight {
   }
 
  protected:
-  /// begin() but for the magnitude.
+  /// Begins spans as begin(), but for the magnitude.
   M begin_kinks(M lanes, const CubicBernstein<F> (&gradient)[3], const Vec3<F>& entry,
                 F length) noexcept {
-    begin_gradients(lanes, gradient, entry, length);
+    begin_gradients(lanes, gradient);
+    return begin_loaded(lanes, entry, length);
+  }
+  /// Begins the same where gradient_ is loaded.
+  M begin_loaded(M lanes, const Vec3<F>& entry, F length) noexcept {
+    begin_places(lanes, entry, length);
     M near(false);
     if (light_.points > 0) near = lanes & (distance_to_lights() < F(nearest_light) * length_);
     kink_ = select(lanes, next_kink(lanes, F(0)), kink_);
     return near;
   }
-  /// begin() where the first kink is known; -1 where a point light is too near.
+  /// Begins spans as begin() where the first kink is known; -1 where a point light is too near.
   M begin_known(M lanes, const CubicBernstein<F> (&gradient)[3], const CubicBernstein<F>& magnitude,
                 const Vec3<F>& entry, F length, F kink) noexcept {
-    begin_gradients(lanes, gradient, entry, length);
+    begin_gradients(lanes, gradient);
+    begin_places(lanes, entry, length);
     kink_ = select(lanes, kink, kink_);
     if (light_.factor != nullptr) begin_factor(lanes, magnitude);
     return lanes & (kink < F(0));
   }
 
   Vec3<F> to_eye_;
+  CubicBernstein<F> gradient_[3];
 
  private:
   using Kind = LightSource<float>::Kind;
@@ -275,13 +282,14 @@ class SpanLight {
   /// Least distance of a point light, in lengths of the way through the cell.
   static constexpr float nearest_light = 8;
 
-  void begin_gradients(M lanes, const CubicBernstein<F> (&gradient)[3], const Vec3<F>& entry,
-                       F length) noexcept {
+  void begin_gradients(M lanes, const CubicBernstein<F> (&gradient)[3]) noexcept {
     for (int c = 0; c < 3; ++c) {
       for (int k = 0; k < 4; ++k) {
         gradient_[c].b[k] = select(lanes, gradient[c].b[k], gradient_[c].b[k]);
       }
     }
+  }
+  void begin_places(M lanes, const Vec3<F>& entry, F length) noexcept {
     if (light_.points == 0) return;
     for (int c = 0; c < 3; ++c) entry_[c] = select(lanes, entry[c], entry_[c]);
     length_ = select(lanes, length, length_);
@@ -436,7 +444,6 @@ class SpanLight {
   }
 
   const PacketLight& light_;
-  CubicBernstein<F> gradient_[3];
   CubicBernstein<F> magnitude_;  ///< if there is a factor of it
   float inverse_light_;          ///< 1 / the brightest factor of a color
   // Of the lanes' cells, if there is a factor of the magnitude:
