@@ -115,35 +115,41 @@ class GradientLoads {
   template <class Value>
   [[gnu::flatten, gnu::noinline]] bool load_values(
       M lanes, const Batch<std::int32_t, N> (&of_lanes)[3]) const noexcept {
-    std::int32_t cell[3][N];
-    for (int a = 0; a < 3; ++a) of_lanes[a].store(cell[a]);
-    const Value* const data = static_cast<const Value*>(grid_.data);
-    const Value* lowest[N];
-    unsigned at_border = 0;
-    for (int l = 0; l < N; ++l) {
-      int place[3];
-      bool inner = true;
-      for (int a = 0; a < 3; ++a) {
-        place[a] = cell[a][l] - grid_.padding[a];
-        inner = inner & (place[a] >= 1) & (place[a] + 2 < grid_.values[a]);
-        has_before_[a][l] = has_behind_[a][l] = 1;
-        flat_[a][l] = 0;
-      }
-      at_border |= inner ? 0u : 1u << l;
-      lowest[l] = inner ? data + place[0] + place[1] * grid_.row + place[2] * grid_.slice : nullptr;
+    using I = Batch<std::int32_t, N>;
+    I place[3];
+    M is_inner = lanes;
+    for (int a = 0; a < 3; ++a) {
+      place[a] = of_lanes[a] - I(grid_.padding[a]);
+      is_inner = is_inner & (place[a] >= I(1)) & (place[a] < I(grid_.values[a] - 2));
     }
-    at_border &= bits(lanes);
-    if (const unsigned inner = bits(lanes) & ~at_border; inner != 0) {
-      const Value* const any_inner = lowest[__builtin_ctz(inner)];
-      for (const Value*& place : lowest) place = place != nullptr ? place : any_inner;
+    const unsigned inner = bits(is_inner), at_border = bits(lanes) & ~inner;
+    if (inner != 0) {
+      // The other lanes load what one of these does.
+      std::int32_t lower[3][N];
+      for (int a = 0; a < 3; ++a) {
+        select(is_inner, place[a], I(place[a][__builtin_ctz(inner)])).store(lower[a]);
+      }
+      const Value* const data = static_cast<const Value*>(grid_.data);
+      const Value* lowest[N];
+      for (int l = 0; l < N; ++l) {
+        lowest[l] = data + lower[0][l] + lower[1][l] * grid_.row + lower[2][l] * grid_.slice;
+      }
       load_inner(lowest);
     }
+    for (int a = 0; a < 3; ++a) {
+      F(1).store(has_before_[a]);
+      F(1).store(has_behind_[a]);
+      F(0).store(flat_[a]);
+    }
+    if (at_border == 0) return true;
+    std::int32_t cell[3][N];
+    for (int a = 0; a < 3; ++a) of_lanes[a].store(cell[a]);
     for (unsigned left = at_border; left != 0; left &= left - 1) {
       const int l = __builtin_ctz(left);
       const std::int32_t of_lane[3] = {cell[0][l], cell[1][l], cell[2][l]};
       load_at_border<Value>(l, of_lane);
     }
-    return at_border == 0;
+    return false;
   }
 
   /// Loads a cell in each lane that has values on all sides, from the place of its lowest corner.
