@@ -49,7 +49,7 @@ TEST(LitFrames, AreWithinWhatTheySayOfTheGeneralPath) {
   if (no_packets()) GTEST_SKIP() << "this machine has none of the instruction sets of packets";
   const char* const wanted = std::getenv("PELLUCID_TEST_SCENES");
   const char* const seed = std::getenv("PELLUCID_TEST_SEED");
-  const int count = wanted != nullptr ? std::atoi(wanted) : 48;
+  const int count = wanted != nullptr ? std::atoi(wanted) : 64;
   const int first = seed != nullptr ? std::atoi(seed) : 0;
   std::uint64_t scalar_fallback = 0, panels = 0;
   std::size_t pixels = 0;
