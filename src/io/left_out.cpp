@@ -5,9 +5,11 @@
 
 #include "axes/grid_axes.h"
 #include "axes/positions_beside.h"
+#include "meshes/load_mesh_step.h"
 #include "meshes/mesh_format.h"
 #include "pellucid/io/color_bar.h"
 #include "pellucid/io/figure.h"
+#include "pellucid/io/film.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/import_transfer_function.h"
 #include "pellucid/io/mesh_source.h"
@@ -39,8 +41,19 @@ LoadedMesh load_mesh(const MeshSource& source, const ParallelFor&) {
   throw left_out(source.file.string() + ": what reads meshes");
 }
 
+LoadedMesh load_mesh_step(const MeshSource& source, const MeshChannels*, const ParallelFor&) {
+  throw left_out(source.file.string() + ": what reads meshes");
+}
+
 std::vector<double> mesh_times(const std::filesystem::path& path, const MeshReadOptions&) {
   throw left_out(path.string() + ": what reads meshes");
+}
+
+// Functions of all steps: that of the step that is shown stands for them.
+
+std::vector<std::size_t> choose_for_all_steps(SceneDescription&, const SceneTimes&,
+                                              const ParallelFor&, const std::function<bool()>&) {
+  return {};
 }
 
 // Transfer functions of other programs.

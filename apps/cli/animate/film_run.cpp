@@ -70,15 +70,6 @@ Camera camera_around(const Scene& scene) {
   return camera_along(frame.forward, normalized(frame.up), world_corners(scene), scene.size);
 }
 
-/// Copies what was chosen from all steps; sources have notes of their own.
-void copy_choice(const LayerDescription& from, LayerDescription& to) {
-  to.transfer_function = from.transfer_function;
-  to.function_change = from.function_change;
-  to.shading = from.shading;
-  to.isosurfaces = from.isosurfaces;
-  to.look = from.look;
-}
-
 /// Returns "3 min 20 s".
 std::string duration_text(double seconds) {
   const long whole = std::lround(seconds);

@@ -112,15 +112,21 @@ class FrameLoader {
   Scene scene_;
 };
 
+/// Writes what was chosen of a layer by choose_for_all_steps() into a description of this layer
+/// whose sources have options of their own.
+void copy_choice(const LayerDescription& from, LayerDescription& to);
+
 /// Chooses what the scene leaves to its data, such as the function, the surfaces and the range of a
 /// layer whose data have steps, from all of these, or of many from `most_steps` evenly among them,
 /// and writes it into the description. Each of these is read for that. Of volumes every second
 /// value along each axis is looked at; functions of meshes are laid over the range of their values
 /// at all steps. Channels of several variables and labels stay as they are. Returns the layers that
-/// were changed. Throws Error.
+/// were changed; none where `ended`, which is asked before each step is read if there is one,
+/// returns true. Throws Error.
 std::vector<std::size_t> choose_for_all_steps(SceneDescription& description,
                                               const SceneTimes& times,
-                                              const ParallelFor& parallel = {});
+                                              const ParallelFor& parallel = {},
+                                              const std::function<bool()>& ended = {});
 inline constexpr std::size_t most_steps = 12;
 
 }  // namespace pellucid

@@ -5,7 +5,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -13,6 +15,7 @@
 #include <variant>
 #include <vector>
 
+#include "meshes/load_mesh_step.h"
 #include "pellucid/io/film.h"
 #include "scene/layer_functions.h"
 
@@ -157,18 +160,28 @@ bool choose(LayerDescription& layer, const std::optional<Look>& of_first, const 
 }
 
 /// Lays the function of a mesh over the values of all steps: a mesh of all of them there is none.
-void widen(std::array<double, 2>& range, const MeshSource& source, const ParallelFor& parallel) {
-  const LoadedMesh loaded = load_mesh(source, parallel);
-  const VolumeStatistics& values = loaded.mesh->statistics(0);
+/// `mesh` is that of the step before, and becomes that of this one.
+void widen(std::array<double, 2>& range, const MeshSource& source,
+           std::shared_ptr<const MeshChannels>& mesh, const ParallelFor& parallel) {
+  mesh = load_mesh_step(source, mesh.get(), parallel).mesh;
+  const VolumeStatistics& values = mesh->statistics(0);
   if (values.finite == 0) return;
   range = {std::min(range[0], values.minimum), std::max(range[1], values.maximum)};
 }
 
 }  // namespace
 
+void copy_choice(const LayerDescription& from, LayerDescription& to) {
+  to.transfer_function = from.transfer_function;
+  to.function_change = from.function_change;
+  to.shading = from.shading;
+  to.isosurfaces = from.isosurfaces;
+  to.look = from.look;
+}
+
 std::vector<std::size_t> choose_for_all_steps(SceneDescription& description,
-                                              const SceneTimes& times,
-                                              const ParallelFor& parallel) {
+                                              const SceneTimes& times, const ParallelFor& parallel,
+                                              const std::function<bool()>& ended) {
   std::vector<std::size_t> changed_layers;
   for (std::size_t i = 0; i < description.layers.size(); ++i) {
     LayerDescription& layer = description.layers[i];
@@ -179,9 +192,11 @@ std::vector<std::size_t> choose_for_all_steps(SceneDescription& description,
       constexpr double infinity = std::numeric_limits<double>::infinity();
       std::array<double, 2> range{infinity, -infinity};
       MeshSource source = *layer.mesh;
+      std::shared_ptr<const MeshChannels> mesh;
       for (const double step : steps) {
+        if (ended && ended()) return {};
         source.options.time = step;
-        widen(range, source, parallel);
+        widen(range, source, mesh, parallel);
       }
       if (!(range[0] < range[1])) continue;
       layer.function_change.range = RangeEnds{RangeEnd{range[0]}, RangeEnd{range[1]}};
@@ -192,6 +207,7 @@ std::vector<std::size_t> choose_for_all_steps(SceneDescription& description,
     std::optional<Look> of_first;
     PooledVolume pooled(steps.size());
     for (const double step : steps) {
+      if (ended && ended()) return {};
       source.options.time = step;
       const Volume volume = load_field(source);
       if (step == steps.front() && takes_look(layer)) of_first = look_of(volume, layer);

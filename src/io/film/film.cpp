@@ -339,7 +339,7 @@ Scene FrameLoader::load(const SceneDescription& description, const ParallelFor& 
   for (std::size_t i = 0; i < count && i < layers_.size(); ++i) {
     if (sources[i] == sources_[i]) kept[i] = scene_.layers[i];
   }
-  Scene scene = remake_scene(description, kept, parallel);
+  Scene scene = remake_scene(description, kept, parallel, nullptr, scene_.layers);
   // The points that stand for opacity tables depend on the other layers.
   if (std::ranges::none_of(description.layers, has_opacity_table) || layers == layers_) {
     for (std::size_t i = 0; i < count && i < layers_.size(); ++i) {

@@ -5,9 +5,10 @@
 #include <utility>
 
 #include "files/memory_limit.h"
+#include "load_mesh_step.h"
 #include "pellucid/io/channel_source.h"
-#include "pellucid/io/mesh_source.h"
 #include "pellucid/scene/error.h"
+#include "pellucid/scene/tetrahedralize_step.h"
 
 namespace pellucid {
 
@@ -88,6 +89,11 @@ std::string overlap_note(const MeshStatistics& s) {
 }
 
 LoadedMesh load_mesh(const MeshSource& source, const ParallelFor& parallel) {
+  return load_mesh_step(source, nullptr, parallel);
+}
+
+LoadedMesh load_mesh_step(const MeshSource& source, const MeshChannels* before,
+                          const ParallelFor& parallel) {
   MeshFile file = read_mesh(source.file, source.options);
   LoadedMesh loaded{nullptr, source.channels};
   if (loaded.channels.empty()) {
@@ -106,7 +112,9 @@ LoadedMesh load_mesh(const MeshSource& source, const ParallelFor& parallel) {
   // Where one is missing the message names those that are there.
   if (all_there) std::erase_if(arrays, [&](const MeshArray& array) { return !is_chosen(array); });
   check_mesh_memory(file.grid);
-  loaded.mesh = cut_into_tetrahedra(file.grid, loaded.channels, parallel);
+  loaded.mesh = file.times.size() > 1
+                    ? tetrahedralize_step(std::move(file.grid), loaded.channels, before, parallel)
+                    : cut_into_tetrahedra(file.grid, loaded.channels, parallel);
   const std::string overlap = overlap_note(loaded.mesh->mesh().statistics());
   if (source.options.note && !overlap.empty()) source.options.note(overlap);
   return loaded;

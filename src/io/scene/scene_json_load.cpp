@@ -2,10 +2,12 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "layer_functions.h"
+#include "meshes/load_mesh_step.h"
 #include "pellucid/io/film.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/io/label_table.h"
@@ -146,10 +148,10 @@ Look chosen_look(const Data& data, const LayerDescription& description) {
   return look;
 }
 
-/// Loads a mesh, whose function is of one variable or of several. `look` becomes the layer's look,
-/// if it takes one.
+/// Loads a mesh, whose function is of one variable or of several. `before`: another step in time.
+/// `look` becomes the layer's look, if it takes one.
 MeshContent load_mesh_content(const LayerDescription& description, const FitTarget& target,
-                              const Layer* loaded, const ParallelFor& parallel,
+                              const Layer* loaded, const Layer* before, const ParallelFor& parallel,
                               MeshSource& mesh_used, std::optional<Look>& look) {
   MeshContent content;
   const std::vector<std::string> names = function_channels(description);
@@ -166,7 +168,9 @@ MeshContent load_mesh_content(const LayerDescription& description, const FitTarg
   if (const auto* const kept = content_of<MeshContent>(loaded)) {
     content.mesh = kept->mesh;
   } else {
-    LoadedMesh mesh = load_mesh(*description.mesh, parallel);
+    const auto* const step = content_of<MeshContent>(before);
+    LoadedMesh mesh =
+        load_mesh_step(*description.mesh, step != nullptr ? step->mesh.get() : nullptr, parallel);
     content.mesh = std::move(mesh.mesh);
     mesh_used.channels = std::move(mesh.channels);
   }
@@ -334,15 +338,17 @@ class LookLoader {
   std::vector<std::string> names_;
 };
 
-/// Takes the data of `loaded` unless it is null.
+/// Takes the data of `loaded` unless it is null, and what stays of `before`, the layer at another
+/// time, unless that is.
 Layer load_layer(const LayerDescription& description, const FitTarget& target, const Layer* loaded,
-                 const ParallelFor& parallel, MeshSource& mesh_used) {
+                 const Layer* before, const ParallelFor& parallel, MeshSource& mesh_used) {
   Layer layer = static_cast<const Layer&>(description);
   std::optional<Look> look;
   if (description.labels) {
     layer.content = load_label_content(*description.labels, loaded);
   } else if (description.mesh) {
-    layer.content = load_mesh_content(description, target, loaded, parallel, mesh_used, look);
+    layer.content =
+        load_mesh_content(description, target, loaded, before, parallel, mesh_used, look);
   } else if (const auto sources = layer_channels(description); !sources.empty()) {
     layer.content = load_channels_content(description, sources, loaded, parallel);
   } else {
@@ -421,14 +427,14 @@ Scene make_scene(const SceneDescription& description, const ParallelFor& paralle
 
 Scene remake_scene(const SceneDescription& description,
                    const std::vector<std::optional<Layer>>& loaded, const ParallelFor& parallel,
-                   std::vector<MeshSource>* meshes_used) {
+                   std::vector<MeshSource>* meshes_used, std::span<const Layer> before) {
   const auto& film = description.animation;
   if (description.time || (film && film->moves_data())) {
     SceneDescription at_time = description;
     at_time.animation.reset();
     if (!at_time.time) set_first_time(*film, at_time);
     resolve_time(at_time);
-    return remake_scene(at_time, loaded, parallel, meshes_used);
+    return remake_scene(at_time, loaded, parallel, meshes_used, before);
   }
   Scene scene;
   static_cast<SceneSettings&>(scene) = description;
@@ -436,7 +442,9 @@ Scene remake_scene(const SceneDescription& description,
   std::vector<MeshSource> meshes(description.layers.size());
   for (std::size_t i = 0; i < description.layers.size(); ++i) {
     const Layer* const kept = loaded[i] ? &*loaded[i] : nullptr;
-    scene.layers.push_back(load_layer(description.layers[i], target, kept, parallel, meshes[i]));
+    scene.layers.push_back(load_layer(description.layers[i], target, kept,
+                                      i < before.size() ? &before[i] : nullptr, parallel,
+                                      meshes[i]));
   }
   if (meshes_used != nullptr) *meshes_used = std::move(meshes);
   scene.camera = description.camera
@@ -462,8 +470,8 @@ Layer remake_layer(const SceneDescription& description, std::size_t layer, const
                    const ParallelFor& parallel) {
   MeshSource mesh;
   return load_layer(description.layers[layer],
-                    {description.integration.tolerance, description.background}, &loaded, parallel,
-                    mesh);
+                    {description.integration.tolerance, description.background}, &loaded, nullptr,
+                    parallel, mesh);
 }
 
 }  // namespace pellucid
