@@ -105,16 +105,61 @@ class ChunkReader {
       throw Error(source.name + ": shards that are compressed as a whole are not read");
     }
     const std::size_t bytes = zarr_chunk_values(chunk, source.name) * array_.type.bytes;
-    // The chunk beside the values, which have their memory by now; codecs take as much again.
-    if (const std::uintmax_t needed = std::uintmax_t{2} * bytes + 2 * source.size;
-        needed > checked_) {
-      check_memory(needed, source.name + ": a chunk");
-      checked_ = needed;
+    if (ZarrInflation::takes(chain.codecs)) {
+      read_slabs(chain, source, stored_axes, first, stored_chunk, bytes);
+      return;
     }
+    // The chunk beside the values, which have their memory by now; codecs take as much again.
+    check_memory_of_chunk(std::uintmax_t{2} * bytes + 2 * source.size, source.name);
     ZarrBytes stored(static_cast<std::size_t>(source.size));
     source.read(0, stored.span());
     const ZarrBytes values = undo_codecs(chain.codecs, std::move(stored), bytes, source.name);
     put(chain, values, stored_axes, first, stored_chunk);
+  }
+
+  void check_memory_of_chunk(std::uintmax_t needed, const std::string& name) {
+    if (needed <= checked_) return;
+    check_memory(needed, name + ": a chunk");
+    checked_ = needed;
+  }
+
+  /// Inflates the `bytes` of a chunk slab by slab, and puts each to its place, so that the chunk is
+  /// never there as a whole, neither compressed nor inflated.
+  void read_slabs(const ZarrChain& chain, const ByteSource& source,
+                  const std::vector<std::size_t>& axes, const std::vector<std::int64_t>& first,
+                  const std::vector<std::int64_t>& chunk, std::size_t bytes) {
+    constexpr std::size_t wanted = std::size_t{1} << 20;
+    std::size_t cut = 0;  // slabs are cut off along the first axis that can be
+    while (cut + 1 < chunk.size() && chunk[cut] == 1) ++cut;
+    const std::int64_t side = chunk.empty() ? 1 : chunk[cut];
+    const std::size_t layer = bytes / static_cast<std::size_t>(side);
+    const std::int64_t most = std::max<std::int64_t>(1, static_cast<std::int64_t>(wanted / layer));
+    // What is inflated for hours without end is not data.
+    check_memory_of_chunk(bytes, source.name);
+    std::uintmax_t at = 0;
+    ZarrInflation inflation(
+        chain.codecs.front(),
+        [&](std::span<std::byte> to) {
+          const auto part =
+              static_cast<std::size_t>(std::min<std::uintmax_t>(to.size(), source.size - at));
+          source.read(at, to.first(part));
+          at += part;
+          return part;
+        },
+        source.name);
+    std::vector<std::int64_t> begin = first, slab = chunk;
+    for (std::int64_t done = 0; done < side;) {
+      const std::int64_t count = std::min(most, side - done);
+      ZarrBytes values(layer * static_cast<std::size_t>(count));
+      inflation.read(values.span());
+      if (!chunk.empty()) {
+        begin[axes[cut]] = first[axes[cut]] + done;
+        slab[cut] = count;
+      }
+      put(chain, values, axes, begin, slab);
+      done += count;
+    }
+    inflation.expect_end();
   }
 
   void put(const ZarrChain& chain, const ZarrBytes& values, const std::vector<std::size_t>& axes,

@@ -80,8 +80,6 @@ std::optional<std::size_t> encoded_size(const ZarrCodec& codec, std::size_t byte
 
 ZarrBytes inflate(const ZarrCodec& codec, const ZarrBytes& stored, std::size_t bytes,
                   const std::string& name) {
-  const auto inflater =
-      codec.kind == Kind::bzip2 ? make_bzip2_inflater(name) : make_zlib_inflater();
   std::span<const std::byte> rest = stored.span();
   const NextBytes next = [&](std::span<std::byte> to) {
     const std::size_t part = std::min(to.size(), rest.size());
@@ -89,15 +87,10 @@ ZarrBytes inflate(const ZarrCodec& codec, const ZarrBytes& stored, std::size_t b
     rest = rest.subspan(part);
     return part;
   };
+  ZarrInflation inflation(codec, next, name);
   ZarrBytes result(bytes);
-  std::span<std::byte> to = result.span();
-  while (!to.empty()) {
-    const std::size_t part = inflater->read(to, next, name);
-    if (part == 0) fail_damaged(codec, name);
-    to = to.subspan(part);
-  }
-  std::array<std::byte, 1> more{};
-  if (inflater->read(more, next, name) > 0) fail_damaged(codec, name);
+  inflation.read(result.span());
+  inflation.expect_end();
   return result;
 }
 
@@ -385,6 +378,30 @@ std::array<std::uint32_t, 256> crc32c_table() {
 }
 
 }  // namespace
+
+bool ZarrInflation::takes(const std::vector<ZarrCodec>& codecs) noexcept {
+  return codecs.size() == 1 &&
+         (codecs.front().kind == Kind::deflate || codecs.front().kind == Kind::bzip2);
+}
+
+ZarrInflation::ZarrInflation(const ZarrCodec& codec, NextBytes next, std::string name)
+    : codec_(codec),
+      next_(std::move(next)),
+      name_(std::move(name)),
+      inflater_(codec.kind == Kind::bzip2 ? make_bzip2_inflater(name_) : make_zlib_inflater()) {}
+
+void ZarrInflation::read(std::span<std::byte> to) {
+  while (!to.empty()) {
+    const std::size_t part = inflater_->read(to, next_, name_);
+    if (part == 0) fail_damaged(codec_, name_);
+    to = to.subspan(part);
+  }
+}
+
+void ZarrInflation::expect_end() {
+  std::array<std::byte, 1> more{};
+  if (inflater_->read(more, next_, name_) > 0) fail_damaged(codec_, name_);
+}
 
 ZarrBytes undo_codecs(const std::vector<ZarrCodec>& codecs, ZarrBytes stored, std::size_t bytes,
                       const std::string& name) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "files/inflater.h"
 #include "zarr_metadata.h"
 
 namespace pellucid {
@@ -31,6 +32,27 @@ class ZarrBytes {
 /// where the build lacks the library of one.
 ZarrBytes undo_codecs(const std::vector<ZarrCodec>& codecs, ZarrBytes stored, std::size_t bytes,
                       const std::string& name);
+
+/// The values of a chunk that deflate or bzip2 alone compress, piece by piece.
+class ZarrInflation {
+ public:
+  /// Returns whether codecs can be undone by it.
+  static bool takes(const std::vector<ZarrCodec>& codecs) noexcept;
+
+  /// `next` reads the compressed bytes. Throws Error that begins with `name`, as all here do.
+  ZarrInflation(const ZarrCodec& codec, NextBytes next, std::string name);
+
+  /// Fills `to` with the next bytes. Throws Error where there are fewer.
+  void read(std::span<std::byte> to);
+  /// Throws Error where there are more.
+  void expect_end();
+
+ private:
+  const ZarrCodec& codec_;
+  NextBytes next_;
+  std::string name_;
+  std::unique_ptr<Inflater> inflater_;
+};
 
 /// Returns the polynomial of iSCSI.
 std::uint32_t crc32c(std::span<const std::byte> bytes) noexcept;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -144,6 +146,51 @@ TEST_F(ZarrTest, TypesThatVolumesHaveNot) {
       << notes_;
   store.type = ">u8";
   EXPECT_EQ(value_at(read_2(store, swapped_bytes_of(counting<std::uint64_t>()), 8), 4, 3, 2), 59);
+}
+
+TEST_F(ZarrTest, ChunksThatAreInflatedInSlabs) {
+  const auto numbers = [](std::size_t count) {
+    std::vector<std::uint16_t> values(count);
+    for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<std::uint16_t>(i * 7919);
+    return values;
+  };
+  ZarrStore store;
+  store.type = "<u2";
+  store.compressor = "{\"id\": \"zlib\", \"level\": 1}";
+  store.encode = [](const std::string& bytes) { return test::deflated(bytes, 15); };
+  // 1.2 MB of a chunk; the second one is cut off by the array's end.
+  store.shape = {41, 150, 131};
+  store.chunk = {30, 150, 131};
+  const std::vector<std::uint16_t> values = numbers(std::size_t{41} * 150 * 131);
+  for (const char* order : {"C", "F"}) {
+    store.order = order;
+    const Volume volume = read_2(store, bytes_of(values), 2);
+    const auto& read = std::get<DataArray<std::uint16_t>>(volume.data());
+    EXPECT_TRUE(std::ranges::equal(read, values)) << order;
+  }
+  // The end of a chunk is looked for.
+  const auto encode = store.encode;
+  store.encode = [&](const std::string& bytes) { return encode(bytes + "more"); };
+  EXPECT_TRUE(contains(error_of([&] { read_2(store, bytes_of(values), 2); }), "is damaged"));
+  store.encode = [&](const std::string& bytes) { return encode(bytes.substr(4)); };
+  EXPECT_TRUE(contains(error_of([&] { read_2(store, bytes_of(values), 2); }), "is damaged"));
+  // Slabs along an axis of components, two of which are in a chunk.
+  store.encode = encode;
+  store.order = "C";
+  store.shape = {3, 20, 200, 150};
+  store.chunk = {2, 20, 200, 150};
+  const std::size_t points = std::size_t{20} * 200 * 150;
+  const std::vector<std::uint16_t> all = numbers(3 * points);
+  fs::remove_all(path("a.zarr"));
+  store.write_2(path("a.zarr"), bytes_of(all), 2);
+  for (int c = 0; c < 3; ++c) {
+    ReadOptions options;
+    options.component = c;
+    const Volume volume = read_volume(path("a.zarr"), options);
+    const auto& read = std::get<DataArray<std::uint16_t>>(volume.data());
+    EXPECT_TRUE(std::equal(read.begin(), read.end(), all.begin() + c * std::ptrdiff_t(points)))
+        << c;
+  }
 }
 
 TEST_F(ZarrTest, Compressors) {
