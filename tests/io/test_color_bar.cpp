@@ -42,6 +42,11 @@ TEST(ColorBar, SpansTheValuesThatAbsorb) {
   EXPECT_TRUE(bars[0].shows_opacity);
   made.description.layers.front().field.options.array = "density";
   EXPECT_EQ(variable_title(made.description.layers[0], made.scene.layers[0]), "density");
+  // A layer of --layer is named like its file.
+  made.scene.layers.front().name = "head.nii.gz";
+  EXPECT_EQ(variable_title(made.description.layers[0], made.scene.layers[0]), "density");
+  made.description.layers.front().field.options.array.reset();
+  EXPECT_EQ(variable_title(made.description.layers[0], made.scene.layers[0]), "head");
   made.scene.layers.front().name = "mine";
   EXPECT_EQ(variable_title(made.description.layers[0], made.scene.layers[0]), "mine");
   made.scene.layers.front().visible = false;

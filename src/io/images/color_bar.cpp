@@ -218,8 +218,10 @@ std::string variable_title(const LayerDescription& description, const Layer& lay
     const Channel& shown = (*channels->channels)[channel];
     return with_unit(shown.name, shown.unit);
   }
-  if (!layer.name.empty()) return layer.name;
-  return field_name(description.labels ? description.labels->field : description.field);
+  const FieldSource& field = description.labels ? description.labels->field : description.field;
+  // Layers that are files beside another one have the names of these, with their endings.
+  const bool is_file = layer.name.empty() || layer.name == field.file.filename().string();
+  return is_file ? field_name(field) : layer.name;
 }
 
 std::vector<ColorBar> color_bars(const SceneDescription& description, const Scene& scene) {
