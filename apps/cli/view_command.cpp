@@ -80,7 +80,9 @@ class BrowserOpener {
 
 /// Reads the input of the arguments for the page. Throws Error.
 view::ViewedScene viewed_scene(const RenderArguments& input) {
-  PreparedScene prepared = prepare(input);
+  std::optional<SceneDescription> asked;
+  PreparedScene prepared =
+      prepare(input, [&](const SceneRequest& request) { asked = request.prepared.description; });
   for (const std::string& note : prepared.import_notes) print_note(note);
   light_look(input, prepared);
   scene_to_json(prepared.description);  // throws what cannot be told to a page, as a name's bytes
@@ -88,7 +90,7 @@ view::ViewedScene viewed_scene(const RenderArguments& input) {
       .reset();  // the page has a tolerance of its own
   const bool keeps_camera = prepared.has_own_camera || !input.camera.empty() || !input.view.empty();
   return {std::move(prepared.description), std::move(prepared.scene), keeps_camera,
-          std::move(prepared.quick_layers)};
+          std::move(prepared.quick_layers), std::move(asked)};
 }
 
 int run_view(const ViewArguments& arguments) {

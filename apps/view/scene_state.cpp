@@ -79,6 +79,14 @@ void apply(const Edit& edit, Json& document) {
   put(layer, edit.key, std::move(value));
 }
 
+/// Copies the function of a layer, its surfaces and its light.
+void copy_look(const LayerDescription& from, LayerDescription& to) {
+  to.transfer_function = from.transfer_function;
+  to.function_change = from.function_change;
+  to.isosurfaces = from.isosurfaces;
+  to.shading = from.shading;
+}
+
 std::string text_of(const LayerDescription& layer) {
   return layer.transfer_function ? transfer_function_to_json(*layer.transfer_function) : "";
 }
@@ -192,8 +200,17 @@ std::string SceneState::function_text(std::size_t layer) const {
 void SceneState::set_default_function(std::size_t layer) {
   SceneDescription next = description_;
   LayerDescription& target = next.layers[checked_layer(layer)];
-  SceneDescription without = description_;
+  SceneDescription without = with_open_function(layer);
   LayerDescription& bare = without.layers[layer];
+  complete_description(remake_layer(timed(without), layer, scene_.layers[layer], parallel_), bare);
+  target.transfer_function = bare.transfer_function;
+  target.shading = bare.shading;
+  take_step(std::move(next), layer, 1, no_gesture);
+}
+
+SceneDescription SceneState::with_open_function(std::size_t layer) const {
+  SceneDescription without = description_;
+  LayerDescription& bare = without.layers[checked_layer(layer)];
   bare.transfer_function.reset();
   // A volume as the program shows a file alone. Beside surfaces the light is theirs, too, and a
   // layer without a function would be transparent.
@@ -205,10 +222,38 @@ void SceneState::set_default_function(std::size_t layer) {
   }
   bare.isosurfaces.clear();
   bare.slices.clear();
-  complete_description(remake_layer(timed(without), layer, scene_.layers[layer], parallel_), bare);
-  target.transfer_function = bare.transfer_function;
-  target.shading = bare.shading;
-  take_step(std::move(next), layer, 1, no_gesture);
+  return without;
+}
+
+bool SceneState::have_same_look(const LayerDescription& a, const LayerDescription& b) {
+  SceneDescription one, other;
+  one.layers = {a};
+  other.layers = {a};
+  copy_look(b, other.layers.front());
+  return scene_to_json(one) == scene_to_json(other);
+}
+
+void SceneState::take_choice(std::size_t layer, const LayerDescription& chosen) {
+  const LayerDescription before = description_.layers[checked_layer(layer)];
+  SceneDescription next = description_, open = description_;
+  LayerDescription& completed = open.layers[layer];
+  copy_choice(chosen, completed);
+  complete_description(remake_layer(timed(open), layer, scene_.layers[layer], parallel_),
+                       completed);
+  copy_look(completed, next.layers[layer]);
+  become(std::move(next), layer, 1);
+  const LayerDescription& taken = description_.layers[layer];
+  const auto renew = [&](SceneDescription& description) {
+    LayerDescription& own = description.layers[layer];
+    if (have_same_look(own, before)) copy_look(taken, own);
+  };
+  renew(keyed_);
+  for (auto* const history : {&undone_by_, &redone_by_}) {
+    for (auto& [description, keyed] : *history) {
+      renew(description);
+      renew(keyed);
+    }
+  }
 }
 
 void SceneState::set_clips(std::vector<Clip> clips, int gesture) {

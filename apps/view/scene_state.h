@@ -51,6 +51,14 @@ class SceneState {
   void refine_gaussians(std::size_t layer, MultivariateDescription gaussians);
   /// Replaces a layer's function by the one that is made from its data, as a step of the history.
   void set_default_function(std::size_t layer);
+  /// Returns the description with a layer that leaves to its data what set_default_function() makes
+  /// from them.
+  SceneDescription with_open_function(std::size_t layer) const;
+  /// Returns whether two layers have the same function, surfaces and light.
+  static bool have_same_look(const LayerDescription& a, const LayerDescription& b);
+  /// Replaces a layer's function, surfaces and light by those of `chosen`, which were chosen from
+  /// all steps of its data: no step of the history, in which they take the old ones' place too.
+  void take_choice(std::size_t layer, const LayerDescription& chosen);
   /// Replaces the scene's clips. Drags of one gesture are undone together.
   void set_clips(std::vector<Clip> clips, int gesture);
   /// Changes what is read for a layer, reads it, and forgets the history. `keeps_function`: whether
@@ -61,6 +69,7 @@ class SceneState {
   // scene_state_film.cpp:
   /// Returns the times of the steps that the scene's time chooses from, ascending; empty: none.
   const std::vector<double>& times() const noexcept { return times_.all(); }
+  const SceneTimes& scene_times() const noexcept { return times_; }
   /// Returns the unit of these times, and how many are left out (SceneTimes).
   const std::string& times_unit() const noexcept { return times_.unit(); }
   std::size_t times_left_out() const noexcept { return times_.left_out(); }

@@ -160,6 +160,7 @@ struct Studio::Visitor {
       studio.start_fit(layer, page);
     } else {
       studio.state_.set_default_function(layer);
+      studio.start_choice(studio.state_.with_open_function(layer));
     }
   }
   void operator()(const CancelFit&) const { studio.cancel_fit(); }
@@ -209,6 +210,7 @@ struct Studio::Visitor {
           field.options.time.reset();
         },
         true);
+    studio.cancel_choice();  // It reads another component.
   }
   void operator()(const ChooseArray& c) const {
     studio.state_.set_source(
@@ -224,6 +226,9 @@ struct Studio::Visitor {
           field.options.component_name.reset();
         },
         false);
+    SceneDescription open = studio.state_.description();
+    open.layers[c.layer].transfer_function.reset();
+    studio.start_choice(std::move(open));
   }
   void operator()(const SetTime& c) const { studio.state_.set_time(c.time); }
   void operator()(const ShowFilmFrame& c) const {
@@ -271,7 +276,8 @@ struct Studio::Visitor {
 };
 
 Studio::Studio(SceneState state, bool keeps_camera, int threads, SceneChanged changed, Send send,
-               std::vector<std::size_t> quick_layers, Worker worker)
+               std::vector<std::size_t> quick_layers, Worker worker,
+               std::optional<SceneDescription> asked)
     : state_(std::move(state)),
       threads_(threads),
       parallel_(parallel_for(threads)),
@@ -283,6 +289,7 @@ Studio::Studio(SceneState state, bool keeps_camera, int threads, SceneChanged ch
       thumbnails_(threads),
       quick_layers_(std::move(quick_layers)) {
   if (keeps_camera) first_camera_ = state_.scene().camera;
+  if (asked) start_choice(*std::move(asked));
   if (worker == Worker::own_thread) thread_ = std::thread([this] { run(); });
 }
 
@@ -293,7 +300,9 @@ Studio::~Studio() {
   }
   wakes_.notify_one();
   frames_.interrupt();
+  cancel_choice();
   if (thread_.joinable()) thread_.join();
+  choice_.reset();
   cancel_fit();
   fitting_.reset();
   film_job_.reset();
@@ -383,7 +392,7 @@ bool Studio::advance(double seconds) {
 }
 
 bool Studio::has_work() const {
-  return is_rendering_ || !asked_.empty() || skipped_ || !opened_.empty() || fitted_ ||
+  return is_rendering_ || !asked_.empty() || skipped_ || !opened_.empty() || fitted_ || chosen_ ||
          (stale_ && pages_ > 0);
 }
 
@@ -396,6 +405,7 @@ void Studio::work(double seconds) {
     }
     carry_out(take_asked());
     finish_fit();
+    finish_choice();
     greet_opened();
     if (stale_) {
       render(seconds);
@@ -416,7 +426,7 @@ bool Studio::has_ended() {
 
 /// Tells whether the picture that is being rendered is of no use any more. Needs the mutex.
 bool Studio::has_overtaken() const {
-  return ended_ || fitted_ ||
+  return ended_ || fitted_ || chosen_ ||
          std::ranges::any_of(asked_, [](const Asked& asked) { return ends_frame(asked.command); });
 }
 
@@ -446,6 +456,7 @@ void Studio::greet_opened() {
   }
   stale_ = true;
   send_scene();
+  tell_choice_failure();
 }
 
 void Studio::carry_out(std::deque<Asked> asked) {

@@ -21,6 +21,7 @@
 #include "scene_state.h"
 #include "server/page_server.h"
 #include "server/saved_files.h"
+#include "steps_choice.h"
 
 namespace pellucid::view {
 
@@ -38,9 +39,11 @@ class Studio {
   enum class Worker { own_thread, caller };
 
   /// `keeps_camera`: whether the camera was chosen by the user, and not fitted to the data.
-  /// `changed` may be empty.
+  /// `changed` may be empty. `asked`: the description before it was completed; what it leaves to
+  /// data with steps is chosen from all of them, and until then from the one that is shown.
   Studio(SceneState state, bool keeps_camera, int threads, SceneChanged changed, Send send,
-         std::vector<std::size_t> quick_layers = {}, Worker worker = Worker::own_thread);
+         std::vector<std::size_t> quick_layers = {}, Worker worker = Worker::own_thread,
+         std::optional<SceneDescription> asked = {});
   ~Studio();
   Studio(const Studio&) = delete;
   Studio& operator=(const Studio&) = delete;
@@ -109,6 +112,18 @@ class Studio {
   void take_gaussians(const Fitting& fitting, GaussianFit::Outcome outcome);
   void cancel_fit();
 
+  // studio_steps.cpp:
+  /// Begins to choose what a description leaves open from all steps, if there are any; a choice
+  /// that goes on is given up.
+  void start_choice(SceneDescription asked);
+  /// Takes what was chosen, if it is done, into the layers that were not edited meanwhile.
+  void finish_choice();
+  /// Tells pages why nothing was chosen, once there is one.
+  void tell_choice_failure();
+  /// Waits for what is being chosen, and takes it.
+  void wait_for_choice();
+  void cancel_choice();
+
   // studio_film.cpp:
   void edit_film(const EditFilm& edit);
   /// Begins to save a film for a page. All pages are told how far it is. Throws Error if one is
@@ -137,6 +152,7 @@ class Studio {
   std::optional<Camera> first_camera_;  ///< none: fitted to the data
   FrameMaker frames_;
   Renderer thumbnails_;
+  std::string choice_failure_;  ///< that no page was told of
   bool with_error_map_ = false, is_fitted_ = false;
   std::vector<std::size_t> quick_layers_;
   bool is_rendering_ = false;                 ///< whether a frame goes on
@@ -157,6 +173,10 @@ class Studio {
   std::unique_ptr<Fitting> fitting_;
   std::optional<GaussianFit::Outcome> fitted_;
   std::size_t fit_number_ = 0;
+  std::unique_ptr<StepsChoice> choice_;
+  std::vector<LayerDescription> before_choice_;
+  std::optional<StepsChoice::Outcome> chosen_;
+  std::size_t choice_number_ = 0;
   std::mutex film_mutex_;  ///< Mutex of the following; mutex_ may be taken within it
   std::unique_ptr<FilmJob> film_job_;
   PageId film_page_ = 0;                  ///< Page that asked for the film

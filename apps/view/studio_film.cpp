@@ -45,6 +45,7 @@ void Studio::save_film(PageId page, const SaveFilm& wanted) {
     film_page_ = page;
     film_has_ended_ = false;
   }
+  wait_for_choice();
   auto job = std::make_unique<FilmJob>(
       state_, wanted, threads_,
       [this, last = Clock::time_point(), frame = 0](const SavedFilmProgress& progress) mutable {

@@ -154,7 +154,8 @@ class Viewer {
     SceneState state(std::move(scene.description), std::move(scene.scene), parallel_for(threads_));
     if (folder != nullptr) state.set_temporary_folder(folder->path());
     studio_ = std::make_unique<Studio>(std::move(state), scene.keeps_camera, threads_,
-                                       options_.changed, sender(), std::move(scene.quick_layers));
+                                       options_.changed, sender(), std::move(scene.quick_layers),
+                                       Studio::Worker::own_thread, std::move(scene.asked));
   }
 
   ViewerOptions options_;

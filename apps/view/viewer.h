@@ -21,6 +21,9 @@ struct ViewedScene {
   /// Layers whose Gaussians were suggested quickly. Better ones are fitted while the first picture
   /// is looked at.
   std::vector<std::size_t> quick_layers{};
+  /// The description before it was completed, with what it leaves open; none: nothing. What is left
+  /// to data with steps in time is chosen from all of them while the first picture is looked at.
+  std::optional<SceneDescription> asked{};
 };
 
 /// Reads an input as the command line names it: a file, "builtin:NAME". Throws Error. Called by a

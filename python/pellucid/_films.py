@@ -62,7 +62,9 @@ def frames(scene: Scene, animation: Optional[dict] = None) -> _Frames:
             picture.set_data(pellucid.render(each).to_srgb8())
 
     Data of files with steps move in time if the animation has a "time", whatever step they were
-    read at. What does not change from frame to frame is kept.
+    read at. What does not change from frame to frame is kept. All frames have the functions of the
+    scene: one that was made from a step is that of this step, where `pellucid animate` makes one
+    from all steps. Give clim=(low, high) of all of them.
 
     Raises Error if the animation is not valid, or names something that the scene has not. A frame
     whose values between two keys make no scene raises it when it is asked for.

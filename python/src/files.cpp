@@ -7,6 +7,7 @@
 #include "common.h"
 #include "handles.h"
 #include "pellucid/io/dicom_series.h"
+#include "pellucid/io/film.h"
 #include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/io/internal/color_data.h"
 #include "pellucid/io/time_steps.h"
@@ -152,6 +153,12 @@ py::object load_scene_file(const std::filesystem::path& path) {
   {
     const ReleasedLock released;
     std::vector<MeshSource> meshes;
+    if (description.time) {
+      for (const std::size_t i :
+           choose_for_all_steps(complete, SceneTimes(description), all_cores())) {
+        copy_choice(complete.layers[i], reading.layers[i]);
+      }
+    }
     scene = make_scene(reading, all_cores(), &meshes);
     for (std::size_t i = 0; i < complete.layers.size(); ++i) {
       if (!complete.layers[i].mesh) continue;

@@ -238,6 +238,49 @@ class Animate(ProgramTest):
         self.assertGreater(last, 200)
         self.assertLessEqual(last, 230)
 
+    def function(self, name):
+        return png_texts(self.read(name))["pellucid.transfer_function"]
+
+    def test_a_picture_of_a_step_has_the_function_of_the_film(self):
+        self.write("run.vti", steps(TIMES, [[value + k / 63 for k in range(64)]
+                                            for value in (1, 2, 8, 4)]))
+        size = ("--size", "9")
+        for more in ((), ("--look", "haze"), ("--preset", "simulation-diverging"),
+                     ("--colormap", "viridis"), ("--look", "haze", "--range", "2%:98%")):
+            self.succeed("animate", "run.vti", *more, *size, "-o", "f/%d.png")
+            films = {self.function(f"f/{i}.png") for i in range(4)}
+            self.assertEqual(len(films), 1, more)
+            for time in TIMES[1:3]:
+                self.succeed("render", "run.vti", "--time", str(time), *more, *size, "-o", "o.png")
+                self.assertEqual({self.function("o.png")}, films, more)
+            shutil.rmtree(self.path("f"))
+        # So do its pixels.
+        self.succeed("render", "run.vti", "--time", "0", "--look", "haze", *size, "-o", "a.png",
+                     "--save-tf", "tf.json")
+        self.assertGreater(json.loads(self.read("tf.json"))["points"][-1]["value"], 7)
+        self.succeed("render", "run.vti", "--time", "0", "--tf", "tf.json", *size, "-o", "b.png")
+        self.assertEqual(self.picture("a.png"), self.picture("b.png"))
+        self.succeed("render", "run.vti", "--look", "haze", *size, "-o", "c.png")
+        self.assertNotEqual(self.picture("a.png"), self.picture("c.png"))
+        # A scene says so as well, unless a source has a time of its own.
+        scene = {"layers": [{"field": {"file": "run.vti"}}], "time": 2,
+                 "image": {"width": 9, "height": 9}}
+        self.write("scene.json", json.dumps(scene).encode())
+        self.succeed("render", "scene.json", "-o", "o.png")
+        pooled = self.function("o.png")
+        self.assertGreater(json.loads(pooled)["points"][-1]["value"], 8)
+        scene["time"] = 0
+        self.write("scene.json", json.dumps(scene).encode())
+        self.succeed("render", "scene.json", "-o", "o.png", "--save-scene", "saved.json")
+        self.assertEqual(self.function("o.png"), pooled)
+        self.succeed("render", "saved.json", "-o", "o.png")
+        self.assertEqual(self.function("o.png"), pooled)
+        del scene["time"]
+        scene["layers"][0]["field"]["time"] = 0
+        self.write("scene.json", json.dumps(scene).encode())
+        self.succeed("render", "scene.json", "-o", "o.png")
+        self.assertLessEqual(json.loads(self.function("o.png"))["points"][-1]["value"], 2)
+
     def test_time_of_a_scene(self):
         self.write("run.vti", steps([0, 3], [[1], [8]]))
         scene = {"layers": [{"field": {"file": "run.vti"}, "transfer_function": {"points": [

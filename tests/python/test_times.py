@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Times of the steps of files, and values between them, against numpy."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -55,6 +57,21 @@ def test_linear_in_time(tmp_path, dtype):
                                     time_between="linear")
         assert read.array.dtype == dtype
         assert np.array_equal(read.array, values[index])
+
+
+def test_a_scene_has_the_function_of_all_steps(tmp_path):
+    values = np.zeros((3, *SHAPE), np.float32)
+    for step, top in enumerate((1, 200, 4)):
+        values[step] = np.linspace(0, top, values[step].size).reshape(SHAPE)
+    np.savez(tmp_path / "a.npz", v=values, time=np.array([3.0, 1.0, 2.0]))
+    field = {"file": "a.npz", "array": "v"}
+    (tmp_path / "s.json").write_text(json.dumps({"layers": [{"field": field}], "time": 3}))
+    layer = pellucid.load_scene(tmp_path / "s.json").layers[0]
+    assert layer.data.array.max() == 1
+    assert layer.transfer_function.points[-1][0] > 100
+    (tmp_path / "s.json").write_text(json.dumps({"layers": [{"field": {**field, "time": 3}}]}))
+    alone = pellucid.load_scene(tmp_path / "s.json").layers[0]
+    assert alone.transfer_function.points[-1][0] < 2
 
 
 def test_what_linear_needs(steps):

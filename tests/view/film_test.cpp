@@ -264,6 +264,40 @@ TEST(Film, ShowsFramesToTheBitAsTheSavedSceneIsAnimated) {
   EXPECT_NE(film_pixels(state, 0), film_pixels(state, 6));
 }
 
+TEST(Film, TheFunctionOfAllStepsIsNoEdit) {
+  SceneState state = state_of(R"({"field": {"file": ")" + file_with_steps().string() + R"("}})");
+  SceneDescription asked = state.with_open_function(0);
+  ASSERT_EQ(choose_for_all_steps(asked, state.scene_times()), std::vector<std::size_t>{0});
+  state.set_film_length(2, 4);
+  state.set_keyframe();
+  state.show_frame(6);
+  state.set_camera(from(1, 2, 9));
+  state.set_keyframe();
+  const std::string before = state.function_text(0);
+  SceneState other = state;
+  other.take_choice(0, asked.layers[0]);
+  other.set_keyframe();
+  EXPECT_TRUE(other.description().animation->tracks.empty());
+  state.edit(Edit{0, "visible", false, 0});
+  state.take_choice(0, asked.layers[0]);
+  const std::string chosen = state.function_text(0);
+  EXPECT_NE(chosen, before);
+  EXPECT_FALSE(state.scene().layers[0].visible);
+  // It is that of the steps before it in the history, and no part of a keyframe.
+  state.undo();
+  EXPECT_EQ(state.function_text(0), chosen);
+  EXPECT_TRUE(state.scene().layers[0].visible);
+  state.set_keyframe();
+  EXPECT_TRUE(state.description().animation->tracks.empty());
+  // Nor is it taken where the function was edited.
+  SceneDescription edited = state.description();
+  EXPECT_TRUE(SceneState::have_same_look(edited.layers[0], state.description().layers[0]));
+  edited.layers[0].visible = false;
+  EXPECT_TRUE(SceneState::have_same_look(edited.layers[0], state.description().layers[0]));
+  edited.layers[0].isosurfaces.push_back({});
+  EXPECT_FALSE(SceneState::have_same_look(edited.layers[0], state.description().layers[0]));
+}
+
 TEST(Film, TurntableStartsFromWhatIsSeen) {
   SceneState state = shells();
   state.set_camera(from(4, 1, 0));

@@ -16,6 +16,7 @@
 #include "arguments/mesh_input.h"
 #include "arguments/output.h"
 #include "pellucid/cpu/render.h"
+#include "pellucid/io/film.h"
 #include "pellucid/io/scene_json.h"
 
 namespace pellucid::cli {
@@ -143,6 +144,8 @@ struct SceneRequest {
   std::shared_ptr<std::vector<std::string>> mesh_notes;
   /// Layers whose data were read for a suggested function, with these; none of the others.
   std::vector<std::optional<Layer>> loaded;
+  /// Steps of the data, one of which is asked for; none: no time is, or that of a film.
+  std::optional<SceneTimes> times;
 };
 /// Puts the arguments over what the input says. Throws Error.
 SceneRequest request_scene(const RenderArguments& arguments);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -466,12 +467,46 @@ void set_crop(const IndexBox& box, LayerDescription& layer) {
 
 }  // namespace
 
+namespace {
+
+/// Returns the steps that a time chooses from; none: no time is asked for.
+std::optional<SceneTimes> times_of(const RenderArguments& arguments,
+                                   const SceneDescription& description) {
+  if (description.time) return SceneTimes(description);
+  if (arguments.is_scene() || description.layers.empty()) return std::nullopt;
+  SceneDescription bare = description;
+  LayerDescription& layer = bare.layers.front();
+  std::optional<double>& time = layer.mesh ? layer.mesh->options.time : layer.field.options.time;
+  if (!time) return std::nullopt;
+  time.reset();
+  return SceneTimes(bare);
+}
+
+/// Chooses what is left to data of which one step is asked for from all steps, as films do: so
+/// pictures of several steps can be compared.
+void choose_from_steps(SceneRequest& request, const ParallelFor& parallel) {
+  if (!request.times) return;
+  SceneDescription& asked = request.prepared.description;
+  SceneDescription tried = asked;
+  for (std::size_t i = 0; i < tried.layers.size(); ++i) {
+    // A part of the data is chosen in the request alone.
+    tried.layers[i].field.options.part = request.description.layers[i].field.options.part;
+  }
+  for (const std::size_t i : choose_for_all_steps(tried, *request.times, parallel)) {
+    copy_choice(tried.layers[i], asked.layers[i]);
+    copy_choice(tried.layers[i], request.description.layers[i]);
+  }
+}
+
+}  // namespace
+
 SceneRequest request_scene(const RenderArguments& arguments) {
   SceneRequest request;
   PreparedScene& prepared = request.prepared;
   prepared.description = describe(arguments, prepared.import_notes);
   SceneDescription& description = prepared.description;
   if (!arguments.mesh.has_times) {
+    request.times = times_of(arguments, description);
     resolve_time(description);
     if (arguments.suggests_functions) set_first_step(description);
   }
@@ -575,9 +610,11 @@ void place_camera(const RenderArguments& arguments, PreparedScene& prepared,
 PreparedScene prepare(const RenderArguments& arguments,
                       const std::function<void(SceneRequest&)>& change) {
   SceneRequest request = request_scene(arguments);
-  if (change) change(request);
   const ParallelFor parallel =
       parallel_for(arguments.threads > 0 ? arguments.threads : default_thread_count());
+  // The viewer does not wait for it.
+  if (!arguments.suggests_functions) choose_from_steps(request, parallel);
+  if (change) change(request);
   std::vector<MeshSource> meshes;
   const std::vector<std::optional<Layer>> loaded = std::move(request.loaded);
   Scene scene = remake_scene(request.description, loaded, parallel, &meshes);
