@@ -171,14 +171,6 @@ void widen(std::array<double, 2>& range, const MeshSource& source,
 
 }  // namespace
 
-void copy_choice(const LayerDescription& from, LayerDescription& to) {
-  to.transfer_function = from.transfer_function;
-  to.function_change = from.function_change;
-  to.shading = from.shading;
-  to.isosurfaces = from.isosurfaces;
-  to.look = from.look;
-}
-
 std::vector<std::size_t> choose_for_all_steps(SceneDescription& description,
                                               const SceneTimes& times, const ParallelFor& parallel,
                                               const std::function<bool()>& ended) {

@@ -123,4 +123,12 @@ void resolve_time(SceneDescription& description) {
   description.time.reset();
 }
 
+void copy_choice(const LayerDescription& from, LayerDescription& to) {
+  to.transfer_function = from.transfer_function;
+  to.function_change = from.function_change;
+  to.shading = from.shading;
+  to.isosurfaces = from.isosurfaces;
+  to.look = from.look;
+}
+
 }  // namespace pellucid
