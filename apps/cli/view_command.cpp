@@ -109,6 +109,7 @@ int run_view(const ViewArguments& arguments) {
     opened.channels.clear();
     opened.layers.clear();
     opened.labels.clear();
+    opened.label_tables.clear();
     return viewed_scene(opened);
   };
   const InterruptGuard guard;

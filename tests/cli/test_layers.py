@@ -50,6 +50,21 @@ class Layers(ProgramTest):
             {"cylinder": {"start": [0, 0, 0], "end": [4, 4, 4], "radius": 1}, "keep": "outside"},
             {"box": {"lower": [0, 0, 0], "upper": [3, 3, 4]}}])
 
+    def test_names_and_colors_of_labels(self):
+        self.write("organs.txt", b'0 0 0 0 0 0 0 "Clear Label"\n2 255 0 0 1 1 1 "liver"\n'
+                                 b'5 0 0 255 1 1 1 "spleen"\n')
+        scene = self.saved("a.npy", "--labels", "labels.npy", "--labels", "labels.npy",
+                           "--label-table", "organs.txt")
+        named, plain = [layer["labels"]["colors"] for layer in scene["layers"][1:]]
+        styles = {style["label"]: style for style in named}
+        self.assertEqual((styles[2]["name"], styles[2]["color"]), ("liver", [1, 0, 0]))
+        self.assertEqual((styles[5]["name"], styles[5]["color"]), ("spleen", [0, 0, 1]))
+        self.assertNotIn("liver", [style.get("name") for style in plain])
+        self.refuse("--label-table: is of a segmentation; give one more --labels", "a.npy",
+                    "--labels", "labels.npy", "--label-table", "organs.txt", "--label-table",
+                    "organs.txt", code=2)
+        self.refuse("none.txt", "a.npy", "--labels", "labels.npy", "--label-table", "none.txt")
+
     def test_a_saved_scene_gives_the_same_picture(self):
         self.succeed("render", "a.npy", "--tf", "tf.json", "--labels", "labels.npy", "--clip",
                      "sphere:2,2,2,1.7", "--size", "12", "-o", "first.exr", "--save-scene",

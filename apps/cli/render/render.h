@@ -33,7 +33,7 @@ struct RenderArguments {
   std::string input;
   std::vector<std::string> outputs;
   std::string depth_picture, error_map, values, save_tf, save_scene;
-  std::vector<std::string> channels, gaussians, layers, labels, clips;
+  std::vector<std::string> channels, gaussians, layers, labels, label_tables, clips;
   std::string transfer_function, preset, look, projection, camera, view, size, background, backdrop;
   ImportArguments import;
   ColorArguments colors;

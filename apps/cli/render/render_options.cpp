@@ -190,6 +190,12 @@ void add_scene_options(CommandLine& command, RenderArguments& arguments) {
       ->option_text("FILE")
       ->allow_extra_args(false);
   command
+      .add_option("--label-table", arguments.label_tables,
+                  "Names and colors of the labels of --labels, of ITK-SNAP (.txt, .label) or 3D "
+                  "Slicer (.ctbl); of several, in their order")
+      ->option_text("FILE")
+      ->allow_extra_args(false);
+  command
       .add_option("--clip", arguments.clips,
                   "Show only what is inside of a shape, in world coordinates; may be repeated. "
                   "SHAPE is plane:X,Y,Z,NX,NY,NZ, box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,R or "

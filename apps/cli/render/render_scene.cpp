@@ -305,11 +305,16 @@ void add_layers(const RenderArguments& arguments, SceneDescription& description)
     });
     description.layers.push_back(std::move(layer));
   }
+  if (arguments.label_tables.size() > arguments.labels.size()) {
+    throw UsageError("--label-table: is of a segmentation; give one more --labels, or drop it");
+  }
+  auto table = arguments.label_tables.begin();
   for (const std::string& file : arguments.labels) {
     LayerDescription layer;
     layer.name = std::filesystem::path(file).filename().string();
     parse_argument("--labels", [&] {
       layer.labels = LabelSource{field_source(file, no_options), {}, {}, {}};
+      if (table != arguments.label_tables.end()) layer.labels->table = *table++;
       return 0;
     });
     description.layers.push_back(std::move(layer));
