@@ -24,7 +24,7 @@ class StepsChoice {
   /// Called once by the other thread, after which nothing is called.
   using Done = std::function<void(Outcome)>;
 
-  /// `asked` leaves functions open.
+  /// Takes a scene of which `asked` leaves functions open.
   StepsChoice(SceneDescription asked, SceneTimes times, ParallelFor parallel, Done done);
   ~StepsChoice();
   StepsChoice(const StepsChoice&) = delete;

@@ -152,7 +152,7 @@ class Studio {
   std::optional<Camera> first_camera_;  ///< none: fitted to the data
   FrameMaker frames_;
   Renderer thumbnails_;
-  std::string choice_failure_;  ///< that no page was told of
+  std::string choice_failure_;  ///< reason that no page was told
   bool with_error_map_ = false, is_fitted_ = false;
   std::vector<std::size_t> quick_layers_;
   bool is_rendering_ = false;                 ///< whether a frame goes on

@@ -27,7 +27,7 @@ struct FunctionSettings {
   imported::SampleFunction own{};    ///< VTK's own values: opacities three times, or colors
   imported::SampleWay way{};         ///< VTK's ways of CIEDE2000; colors alone have them
   bool is_indexed = false;           ///< colors alone are
-  int steps = 0;                     ///< of colors that have some; 0: they have none
+  int steps = 0;                     ///< number of different colors; 0: they have no steps
 };
 
 /// Reflection of light by a component.

@@ -39,7 +39,7 @@ class ZarrInflation {
   /// Returns whether codecs can be undone by it.
   static bool takes(const std::vector<ZarrCodec>& codecs) noexcept;
 
-  /// `next` reads the compressed bytes. Throws Error that begins with `name`, as all here do.
+  /// Inflates bytes that `next` reads. Throws Error that begins with `name`, as all here do.
   ZarrInflation(const ZarrCodec& codec, NextBytes next, std::string name);
 
   /// Fills `to` with the next bytes. Throws Error where there are fewer.
