@@ -73,55 +73,6 @@ TEST(Tiles, GoFromTheMiddleOutwards) {
   }
 }
 
-TEST(TakeInTurn, TakesEachOnceAndInOrder) {
-  for (const int threads : {1, 2, 7}) {
-    std::vector<std::atomic<int>> taken(1000);
-    std::vector<std::size_t> order;
-    std::mutex mutex;
-    parallel_for_ordered(taken.size(), threads, [&](std::size_t i) {
-      ++taken[i];
-      const std::lock_guard lock(mutex);
-      order.push_back(i);
-      return true;
-    });
-    for (const auto& times : taken) EXPECT_EQ(times, 1);
-    if (threads > 1) continue;
-    EXPECT_TRUE(std::ranges::is_sorted(order));
-  }
-}
-
-TEST(TakeInTurn, StopsWithinWhatTheThreadsHaveTaken) {
-  constexpr std::size_t stopping = 100;
-  for (const int threads : {1, 2, 7}) {
-    std::atomic<std::size_t> taken{0}, after{0};
-    std::atomic<bool> stopped{false};
-    parallel_for_ordered(100000, threads, [&](std::size_t) {
-      if (stopped) ++after;
-      if (++taken >= stopping) stopped = true;
-      std::this_thread::sleep_for(std::chrono::microseconds(10));
-      return !stopped;
-    });
-    EXPECT_GE(taken, stopping);
-    EXPECT_LE(taken, stopping + 2 * static_cast<std::size_t>(threads)) << threads << " threads";
-    EXPECT_LE(after, static_cast<std::size_t>(threads)) << threads << " threads";
-  }
-}
-
-TEST(TakeInTurn, AnExceptionEndsItAndComesOut) {
-  for (const int threads : {1, 3}) {
-    std::atomic<std::size_t> taken{0};
-    EXPECT_THROW(parallel_for_ordered(100000, threads,
-                                      [&](std::size_t i) {
-                                        ++taken;
-                                        if (i == 10) throw std::runtime_error("here");
-                                        std::this_thread::sleep_for(std::chrono::microseconds(10));
-                                        return true;
-                                      }),
-                 std::runtime_error);
-    EXPECT_LT(taken, 1000u);
-  }
-}
-
 /// Tiles that are finished out of order, as by threads of unequal speed.
 TEST(Progress, TellsOfACoarseLevelFirst) {
   RenderOptions options;
