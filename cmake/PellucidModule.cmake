@@ -49,6 +49,10 @@ if(PELLUCID_WEB)
   target_compile_options(pellucid_build_flags INTERFACE
     -fwasm-exceptions -Wno-shorten-64-to-32 -Wno-unused-command-line-argument)
   target_link_options(pellucid_build_flags INTERFACE -fwasm-exceptions)
+  if(PELLUCID_WEB_THREADS)
+    target_compile_options(pellucid_build_flags INTERFACE -pthread)
+    target_link_options(pellucid_build_flags INTERFACE -pthread)
+  endif()
 endif()
 
 option(PELLUCID_PRECOMPILE_HEADERS

@@ -5,16 +5,21 @@
 #include <emscripten/em_js.h>
 #include <emscripten/emscripten.h>
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <thread>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -45,8 +50,28 @@ constexpr const char* folder_of_uploads = "/uploads";
 /// Bytes of files for which a heap of 2 GiB has room, beside what is made of them.
 constexpr std::uint64_t most_upload_bytes = std::uint64_t{1} << 29;
 
+/// Returns how many threads there are to work: those that meet here within two seconds.
+int count_threads() {
+  const int most = default_thread_count();
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+  std::atomic<int> here{0}, met{1};
+  // So few are not split further (parallel_for()), so that a thread waits with one part.
+  constexpr int part = 64;
+  parallel_for(most)(part * most, [&](int, int) {
+    const int now = ++here;
+    for (int seen = met; seen < now && !met.compare_exchange_weak(seen, now);) {
+    }
+    while (met < most && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+    --here;
+  });
+  return met;
+}
+
 class WorkerViewer {
  public:
+  /// Makes the threads, and returns how many there are.
+  int make_threads() { return threads_ = count_threads(); }
+
   /// Tells the page what there is: the scene that it came with, or nothing yet.
   void start(const std::string& input) {
     send(text_message({{"type", "start"},
@@ -71,10 +96,33 @@ class WorkerViewer {
   }
 
   /// Returns whether there is more to do.
-  bool advance(double seconds) { return studio_ && studio_->advance(seconds); }
+  bool advance(double seconds) {
+    const bool has_more = studio_ && studio_->advance(seconds);
+    post();
+    return has_more;
+  }
 
  private:
-  static void send(const PageMessage& message) {
+  /// Sends a message, at the end of the turn where another thread than the worker's says it: only
+  /// that one reaches the page.
+  void send(PageMessage message) {
+    {
+      const std::lock_guard lock(mutex_);
+      outgoing_.push_back(std::move(message));
+    }
+    if (std::this_thread::get_id() == own_thread_) post();
+  }
+
+  void post() {
+    std::vector<PageMessage> messages;
+    {
+      const std::lock_guard lock(mutex_);
+      messages.swap(outgoing_);
+    }
+    for (const PageMessage& message : messages) post(message);
+  }
+
+  static void post(const PageMessage& message) {
     const std::string& bytes = *message.bytes;
     if (message.kind == PageMessage::Kind::text) {
       pellucid_post_text(bytes.data(), bytes.size());
@@ -114,7 +162,7 @@ class WorkerViewer {
                const std::filesystem::path& folder) {
     send(text_message({{"type", "opening"}, {"name", name}}));
     try {
-      ViewedScene scene = view_input(input, parallel_for(1));
+      ViewedScene scene = view_input(input, parallel_for(threads_));
       studio_.reset();
       send(text_message({{"type", "opened"}, {"name", name}}));
       show(std::move(scene), folder);
@@ -140,21 +188,25 @@ class WorkerViewer {
   }
 
   void show(const std::string& input, const std::filesystem::path& folder) {
-    show(view_input(input, parallel_for(1)), folder);
+    show(view_input(input, parallel_for(threads_)), folder);
   }
 
   /// Shows a scene. `folder`: where its files are, which a saved scene names by themselves.
   void show(ViewedScene scene, const std::filesystem::path& folder) {
-    SceneState state(std::move(scene.description), std::move(scene.scene), parallel_for(1));
+    SceneState state(std::move(scene.description), std::move(scene.scene), parallel_for(threads_));
     if (!folder.empty()) state.set_temporary_folder(folder);
     studio_ = std::make_unique<Studio>(
-        std::move(state), scene.keeps_camera, 1, SceneChanged{},
-        [](std::optional<PageId>, const PageMessage& message) { send(message); },
+        std::move(state), scene.keeps_camera, threads_, SceneChanged{},
+        [this](std::optional<PageId>, PageMessage message) { send(std::move(message)); },
         std::vector<std::size_t>{}, Studio::Worker::caller);  // a better fit would hold up the page
     studio_->page_opened(page, number_);
   }
 
+  const std::thread::id own_thread_ = std::this_thread::get_id();
+  int threads_ = 1;
   std::uint64_t number_ = 0;  ///< of messages of the page
+  std::mutex mutex_;          ///< guards outgoing_
+  std::vector<PageMessage> outgoing_;
   std::unique_ptr<Studio> studio_;
 };
 
@@ -168,6 +220,11 @@ WorkerViewer& viewer() {
 }  // namespace pellucid::view
 
 extern "C" {
+
+/// Makes the threads that work from here on, and returns how many there are, this one among them.
+EMSCRIPTEN_KEEPALIVE int pellucid_make_threads() {
+  return pellucid::view::viewer().make_threads();
+}
 
 /// Begins with a scene of the page's files, or with none where `input` is empty.
 EMSCRIPTEN_KEEPALIVE void pellucid_start(const char* input) {
