@@ -4,6 +4,10 @@
 renderer. The program puts scenes where MARK stands; without one the page asks for a file.
 
   make_page.py --page FOLDER --web FOLDER --glue FILE.js --module FILE.wasm --output FILE.html
+               [--threads FOLDER]
+
+With --threads it also holds the renderer with threads, of that folder of a build, and takes it
+where the browser lets a page have them.
 
 The modules of the page become one script, each a function that returns what it exports. Nothing of
 the page is fetched: its policy forbids every request.
@@ -63,17 +67,21 @@ def digest(text):
     return "'sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() + "'"
 
 
+def packed(path):
+    return base64.b64encode(gzip.compress(path.read_bytes(), 9, mtime=0)).decode()
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     for name in ("page", "web", "glue", "module", "output"):
         parser.add_argument(f"--{name}", type=pathlib.Path, required=True)
+    parser.add_argument("--threads", type=pathlib.Path)
     arguments = parser.parse_args()
     modules = {path.stem: read(path) for path in sorted(arguments.page.glob("*.js"))}
     modules["end"] = read(arguments.web / "end.js")
     script = inline(bundle(modules))
     style = read(arguments.page / "style.css")
     icon = base64.b64encode((arguments.page / "icon.svg").read_bytes()).decode()
-    packed = gzip.compress(arguments.module.read_bytes(), 9, mtime=0)
     policy = (f"default-src 'none'; script-src {digest(script)} 'wasm-unsafe-eval' blob:; "
               f"worker-src blob:; style-src {digest(style)}; img-src data: blob:; "
               "base-uri 'none'; form-action 'none'")
@@ -82,10 +90,17 @@ def main():
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">',
         f"<style>{style}</style>",
         f'<script type="module">{script}</script>'])
+    threads = []
+    if arguments.threads:
+        worker = arguments.threads / "pellucid_worker"
+        threads = [element("threads-glue", inline(read(worker.with_suffix(".js")))),
+                   element("threads-worker", inline(read(worker.with_suffix(".worker.js")))),
+                   element("threads-module", packed(worker.with_suffix(".wasm")))]
     data = "\n".join([
         element("worker", inline(read(arguments.web / "worker.js"))),
         element("glue", inline(read(arguments.glue))),
-        element("module", base64.b64encode(packed).decode()),
+        element("module", packed(arguments.module)),
+        *threads,
         MARK,
         element("embedded-end", "")])
     for old, new in (('<link rel="icon" href="icon.svg">',

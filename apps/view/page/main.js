@@ -211,6 +211,8 @@ export class Viewer {
     document.getElementById('mark').className = mark;
     const shown = document.getElementById('state-text');
     if (shown.textContent !== text) shown.textContent = text;
+    const {threads} = document.body.dataset;
+    if (threads) shown.title = `Rendered in this page, on ${threads} thread${threads === '1' ? '' : 's'}`;
     document.body.dataset.state = mark;
   }
 

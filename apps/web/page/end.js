@@ -7,6 +7,8 @@
 export const isProgram = false;
 /** Milliseconds in which a kernel answers that is to be used in the place of a worker. */
 const longestSilence = 3000;
+/** Milliseconds in which threads are there that are to be used in the place of one. */
+const longestStart = 15000;
 
 const needed = 'It takes WebAssembly with SIMD and exceptions: Chrome or Edge 97, Firefox 113, ' +
   'Safari 16.4, or later.';
@@ -66,18 +68,28 @@ class EndSocket extends EventTarget {
   }
 }
 
+/** The renderer with threads, where the page has it and its server lets it share memory. */
+function threadedRenderer() {
+  const [glue, worker] = ['threads-glue', 'threads-worker']
+    .map((id) => document.getElementById(id)?.textContent);
+  return self.crossOriginIsolated && worker ? {glue, worker} : null;
+}
+
 /** A worker that renders in this page. */
 class WorkerSocket extends EndSocket {
   constructor() {
     super();
     this.answers = new Map();
-    this.begin().catch((error) => this.end(error.message));
+    this.timer = 0;  // while threads are waited for
+    this.begin(threadedRenderer()).catch((error) => this.end(error.message));
   }
 
-  async begin() {
+  /** @param {?{glue: string, worker: string}} threads null: without */
+  async begin(threads) {
+    const prefix = threads ? 'threads-' : '';
     let module = null;
     try {
-      module = await inflated(bytesOf(document.getElementById('module')));
+      module = await inflated(bytesOf(document.getElementById(`${prefix}module`)));
     } catch {
       throw new Error(document.getElementById('embedded-end') && typeof DecompressionStream !==
         'function' ? `This browser cannot show this page. ${needed}`
@@ -85,18 +97,20 @@ class WorkerSocket extends EndSocket {
     }
     const why = trouble(module);
     if (why) throw new Error(why);
-    const script = [document.getElementById('glue'), document.getElementById('worker')]
+    const script = [`${prefix}glue`, 'worker'].map((id) => document.getElementById(id))
       .map(({textContent}) => textContent).join('\n');
     const address = URL.createObjectURL(new Blob([script], {type: 'text/javascript'}));
     this.worker = new Worker(address);
     URL.revokeObjectURL(address);
     this.worker.onmessage = ({data}) => this.answer(data);
-    this.worker.onerror = (event) => this.end(event.message);
+    this.worker.onerror = (event) => (this.timer ? this.goOnWithoutThreads()
+      : this.end(event.message));
+    if (threads) this.timer = setTimeout(() => this.goOnWithoutThreads(), longestStart);
     const files = embeddedFiles().map(({name, size, bytes}) => ({name, size, bytes: bytes()}));
     for (const {name, size, bytes} of files) {
       if (bytes.length !== size) throw new Error(`${name}: is damaged in this page. Copy it again.`);
     }
-    this.worker.postMessage({module, files},
+    this.worker.postMessage({module, files, threads},
       [module.buffer, ...files.map(({bytes}) => bytes.buffer)]);
   }
 
@@ -104,13 +118,28 @@ class WorkerSocket extends EndSocket {
     if (typeof data === 'string' || data instanceof ArrayBuffer) {
       this.receive(data);
     } else if (data.ready) {
+      this.stopTimer();
+      document.body.dataset.threads = data.threads;
       this.open();
+    } else if (data.withoutThreads) {
+      this.goOnWithoutThreads();
     } else if (data.ended) {
       this.end(data.ended);
     } else if (data.copied) {
       this.answers.get(data.copied)?.(data.error);
       this.answers.delete(data.copied);
     }
+  }
+
+  stopTimer() {
+    clearTimeout(this.timer);
+    this.timer = 0;
+  }
+
+  goOnWithoutThreads() {
+    this.stopTimer();
+    this.worker.terminate();
+    this.begin(null).catch((error) => this.end(error.message));
   }
 
   send(text) { this.worker?.postMessage(text); }
@@ -124,6 +153,7 @@ class WorkerSocket extends EndSocket {
   }
 
   end(why) {
+    this.stopTimer();
     this.worker?.terminate();
     for (const answer of this.answers.values()) answer(why);
     this.answers.clear();
