@@ -25,7 +25,7 @@ namespace {
 struct ExportArguments {
   RenderArguments scene;
   std::string output, largest, crop;
-  bool reduces = false;
+  bool reduces = false, has_threads = false;
 };
 
 /// Reads "20M": a number of bytes, or of so many thousands of them.
@@ -99,10 +99,12 @@ int run_export(const ExportArguments& given) {
   if (!arguments.scene.quiet) {
     for (const std::string& note : prepared.import_notes) print_note(note);
   }
+  const PageThreads threads = arguments.has_threads ? PageThreads::where_allowed : PageThreads::one;
   const auto [page, note] =
       arguments.reduces
-          ? reduced_page(prepared.description, prepared.scene, static_cast<std::uint64_t>(largest))
-          : ReducedPage{page_of(embed_scene(prepared.description, prepared.scene)), ""};
+          ? reduced_page(prepared.description, prepared.scene, static_cast<std::uint64_t>(largest),
+                         threads)
+          : ReducedPage{page_of(embed_scene(prepared.description, prepared.scene), threads), ""};
   const double size = static_cast<double>(page.size());
   if (largest > 0 && size > largest) {
     throw Error(
@@ -147,6 +149,9 @@ Command add_export(CommandLine& app) {
       "--reduce", arguments->reduces,
       "Make data coarser until the page has --max-size: half the resolution along each "
       "axis, again and again. The page tells");
+  command.add_flag("--page-threads", arguments->has_threads,
+                   "Write a larger page, which renders on all cores where its server sends "
+                   "Cross-Origin-Opener-Policy and -Embedder-Policy, and on one thread elsewhere");
   command.add_threads(arguments->scene.threads);
   command.add_flag("-q,--quiet", arguments->scene.quiet, "Print no notes, only errors");
   add_scene_options(command, arguments->scene);

@@ -34,13 +34,17 @@ struct EmbeddedScene {
 EmbeddedScene embed_scene(const SceneDescription& description, const Scene& scene,
                           std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
+/// Threads that a page has for rendering: one, or as many as its machine has cores where its server
+/// lets it share memory (docs/how-to/pages.md), else one. For the latter it holds two renderers.
+enum class PageThreads { one, where_allowed };
+
 /// Returns a page that shows the scene in a browser, on its own: HTML with the viewer, the renderer
 /// as WebAssembly and the data. It asks for no other file. Throws Error if the page that it is made
 /// of was not built (scripts/build-web) or is of another version.
-std::string page_of(const EmbeddedScene& scene);
+std::string page_of(const EmbeddedScene& scene, PageThreads threads = PageThreads::one);
 
 /// Returns the page without a scene, which asks for a file. Throws Error likewise.
-std::string empty_page();
+std::string empty_page(PageThreads threads = PageThreads::one);
 
 /// Page whose data may be coarser than those of its scene.
 struct ReducedPage {
@@ -53,6 +57,6 @@ struct ReducedPage {
 /// that are numbers, or by the most common label. Their boxes stay where they are. Meshes stay as
 /// they are, so that the page may still be larger. Throws Error as embed_scene() and page_of() do.
 ReducedPage reduced_page(const SceneDescription& description, const Scene& scene,
-                         std::uint64_t most_bytes);
+                         std::uint64_t most_bytes, PageThreads threads = PageThreads::one);
 
 }  // namespace pellucid

@@ -117,7 +117,7 @@ std::vector<std::string> CoarserScene::notes() const {
 }
 
 ReducedPage reduced_page(const SceneDescription& description, const Scene& scene,
-                         std::uint64_t most_bytes) {
+                         std::uint64_t most_bytes, PageThreads threads) {
   CoarserScene coarser(description, scene);
   std::uint64_t most_data = most_bytes;
   while (true) {
@@ -133,7 +133,7 @@ ReducedPage reduced_page(const SceneDescription& description, const Scene& scene
       embedded.note += (embedded.note.empty() ? "data reduced: " : ", ") + note;
     }
     if (!embedded.note.empty()) embedded.note += "; the picture is exact for these";
-    ReducedPage made{page_of(embedded), embedded.note};
+    ReducedPage made{page_of(embedded, threads), embedded.note};
     if (made.page.size() <= most_bytes || !coarser.step()) return made;
   }
 }

@@ -13,10 +13,13 @@ namespace pellucid {
 
 namespace {
 
-/// The page that scripts/build-web makes, and the mark in it that the data replace
+/// Pages that scripts/build-web makes, and the mark in them that the data replace
 /// (apps/web/make_page.py).
 constexpr Module page{"pellucid_page.html", "shows scenes in a page",
                       "Emscripten (Debian: emscripten): run scripts/build-web"};
+constexpr Module page_with_threads{
+    "pellucid_page_threads.html", "shows scenes in a page with threads",
+    "Emscripten (Debian: emscripten): run scripts/build-web --threads"};
 constexpr std::string_view mark = "<!-- embedded -->";
 
 void append_base64(std::string& text, std::string_view bytes) {
@@ -49,8 +52,9 @@ void append_file(std::string& text, const EmbeddedFile& file) {
 
 }  // namespace
 
-std::string empty_page() {
-  const std::filesystem::path path = module_file(page);
+std::string empty_page(PageThreads threads) {
+  const std::filesystem::path path =
+      module_file(threads == PageThreads::one ? page : page_with_threads);
   std::string text = read_text_file(path);
   if (text.find(mark) == text.npos) {
     throw Error(path.string() + ": is no page for scenes; run scripts/build-web again");
@@ -58,8 +62,8 @@ std::string empty_page() {
   return text;
 }
 
-std::string page_of(const EmbeddedScene& scene) {
-  const std::string empty = empty_page();
+std::string page_of(const EmbeddedScene& scene, PageThreads threads) {
+  const std::string empty = empty_page(threads);
   const std::size_t at = empty.find(mark);
   std::string text = empty.substr(0, at);
   append_file(text, {"scene.json", scene.scene});
