@@ -45,7 +45,10 @@ class PageTest(unittest.TestCase):
         return self.path("page.html")
 
     def open(self, path, **options):
-        page = Page(File(path), self.folder, **options)
+        return self.open_page(File(path), **options)
+
+    def open_page(self, viewer, **options):
+        page = Page(viewer, self.folder, **options)
         self.addCleanup(page.browser.quit)
         return page
 
