@@ -2,6 +2,7 @@
 #include "vtk_objects.h"
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -195,7 +196,7 @@ FunctionSettings colors_of(const VtkObject& function) {
   made.is_indexed = function.get<bool>("GetIndexedLookup");
   if (function.is_a("vtkDiscretizableColorTransferFunction") &&
       function.get<bool>("GetDiscretize")) {
-    made.steps = function.get<int>("GetNumberOfValues");
+    made.steps = function.get<std::int64_t>("GetNumberOfValues");
   }
   return made;
 }

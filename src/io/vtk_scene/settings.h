@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +28,7 @@ struct FunctionSettings {
   imported::SampleFunction own{};    ///< VTK's own values: opacities three times, or colors
   imported::SampleWay way{};         ///< VTK's ways of CIEDE2000; colors alone have them
   bool is_indexed = false;           ///< colors alone are
-  int steps = 0;                     ///< number of different colors; 0: they have no steps
+  std::int64_t steps = 0;            ///< number of different colors; 0: they have no steps
 };
 
 /// Reflection of light by a component.
