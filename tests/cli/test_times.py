@@ -307,7 +307,7 @@ class Times(ProgramTest):
         self.assertEqual((scene["layers"][0]["field"]["time"],
                           scene["layers"][0]["field"]["time_between"]), (1.25, "linear"))
         self.succeed("render", "s.json", "-q", "-o", "b.exr")
-        self.assertEqual(self.read("a.exr")[-300:], self.read("b.exr")[-300:])
+        self.assertTrue(self.report("compare", "a.exr", "b.exr")["identical"])
         del scene["layers"][0]["field"]["time"]
         self.write("t.json", json.dumps(scene))
         self.fail_with('linear between steps in time needs a time', "render", "t.json", "-o",
