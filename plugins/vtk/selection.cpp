@@ -13,7 +13,11 @@ bool is_selecting(vtkRenderer& renderer) {
 }
 
 bool is_selected_by_prop(vtkRenderer& renderer) {
-  return renderer.GetSelector()->GetCurrentPass() == vtkHardwareSelector::ACTOR_PASS;
+  // Other selections ask for points or cells of what they find, and volumes would hide those
+  // behind.
+  vtkHardwareSelector& selector = *renderer.GetSelector();
+  return selector.GetActorPassOnly() &&
+         selector.GetCurrentPass() == vtkHardwareSelector::ACTOR_PASS;
 }
 
 void show_number_of_prop(vtkRenderer& renderer, Image& image) {
@@ -25,11 +29,8 @@ void show_number_of_prop(vtkRenderer& renderer, Image& image) {
   std::array<float, 3> number{};
   selector.GetPropColorValue(number.data());
   selector.EndRenderProp();
-  // ParaView's selector gives no number to props of which it selects nothing: what is behind them
-  // is selected.
-  const bool has_number = number != std::array<float, 3>{};
   for (std::array<float, 4>& pixel : image.pixels) {
-    if (has_number && pixel[3] >= seen) {
+    if (pixel[3] >= seen) {
       pixel = {number[0], number[1], number[2], 1};
     } else {
       pixel = {0, 0, 0, 0};
