@@ -455,8 +455,10 @@ class Films(TimelineTest):
         """A program of this name that does what it is told, in front of PATH."""
         os.mkdir(self.path("bin"))
         with open(self.path("bin/ffmpeg"), "w", encoding="ascii") as file:
-            file.write(f'#!/bin/sh\necho $$ > {self.path("pid")}\n'
-                       f'case "$*" in *lavfi*) {check} ;; esac\n{encode}\n')
+            # The number is there at once or not at all: the program may be killed at any line.
+            file.write(f'#!/bin/sh\ncase "$*" in *lavfi*) {check} ;; esac\n'
+                       f'echo $$ > {self.path("number")}\n'
+                       f'mv {self.path("number")} {self.path("pid")}\n{encode}\n')
         os.chmod(self.path("bin/ffmpeg"), 0o755)
         return {**os.environ, "PATH": self.path("bin") + ":" + os.environ["PATH"]}
 
@@ -468,6 +470,12 @@ class Films(TimelineTest):
         finally:
             os.environ.clear()
             os.environ.update(before)
+
+    def wait_for_encoder(self):
+        deadline = time.monotonic() + 60
+        while not os.path.exists(self.path("pid")):
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.05)
 
     def encoder_runs(self):
         with open(self.path("pid"), encoding="ascii") as file:
@@ -495,12 +503,15 @@ class Films(TimelineTest):
         def encodes(message):
             return message["type"] == "film_progress" and message["frame"] > message["frames"]
         socket.receive_until(encodes)
+        self.wait_for_encoder()
         began = time.monotonic()
         socket.send(type="cancel_film")
         self.assertIn("cancelled", socket.receive_type("film_ended")["failure"])
         self.wait_for_end_of_encoder()
+        os.remove(self.path("pid"))
         socket.send(type="save_film", width=16, height=16, tolerance=0.01, format="webm")
         socket.receive_until(encodes)
+        self.wait_for_encoder()
         # Another file does not wait for it, nor does Ctrl-C.
         socket.send(type="open", input="builtin:shells:8")
         socket.receive_type("opened")
