@@ -7,8 +7,10 @@
   due_checks.py left-out        prints a regular expression of ctest names that are not due
   due_checks.py due-tests       prints one of those that are
   due_checks.py passed NAME     notes in .ci/passed that this one passed for the files as they are
-  due_checks.py note RESULTS    the same for every check whose tests all ran and passed, by the file
-                                that ctest --output-junit wrote
+  due_checks.py note RESULTS TESTS
+                                the same for every check whose tests all ran and passed, by the file
+                                that ctest --output-junit wrote, and of all tests, what
+                                ctest --show-only=json-v1 prints
 
 A check's files are known by a hash of their names, modes and contents as they lie in the working
 tree. A check is due if .ci/passed has another hash for it, or none. .ci/passed that cannot be read,
@@ -19,6 +21,7 @@ import configparser
 import fnmatch
 import functools
 import hashlib
+import json
 import os
 import re
 import subprocess
@@ -141,13 +144,21 @@ def results_of(file):
         yield case.get("name"), ran
 
 
-def passed_in(results):
-    """Tells of a check whether it has tests in the results, and all of them passed."""
+def names_of(file):
+    """The names of all tests of ctest."""
+    return {test["name"] for test in json.loads(Path(file).read_text())["tests"]}
+
+
+def passed_in(results, names):
+    """Tells of a check whether it has tests among all names, and all of them ran and passed."""
+    passed = {name for name, ran in results if ran}
+    passed -= {name for name, ran in results if not ran}
+
     def is_passed(check):
         if check.tests is None:
             return False
-        mine = [ran for name, ran in results if re.search(check.tests, name)]
-        return bool(mine) and all(mine)
+        mine = {name for name in names if re.search(check.tests, name)}
+        return bool(mine) and mine <= passed
     return is_passed
 
 
@@ -156,10 +167,13 @@ def run(arguments):
     parser.add_argument("--root", type=Path, default=REPOSITORY)
     parser.add_argument("command", choices=["due", "left-out", "due-tests", "passed", "note"])
     parser.add_argument("name", nargs="?")
+    parser.add_argument("all_tests", nargs="?")
     arguments = parser.parse_args(arguments)
     root, name = arguments.root, arguments.name
     if arguments.command == "note":
-        noted = note_passed(root, passed_in(list(results_of(name))))
+        if arguments.all_tests is None:
+            raise ValueError("note takes two files: results, and what there is to test")
+        noted = note_passed(root, passed_in(list(results_of(name)), names_of(arguments.all_tests)))
         print(f"{len(noted)} noted in .ci/passed: {' '.join(noted)}")
         return 0
     if name and name not in {check.name for check in read_checks(root)}:
@@ -182,7 +196,7 @@ def run(arguments):
 def main(arguments):
     try:
         return run(arguments)
-    except (ValueError, OSError, KeyError, configparser.Error, subprocess.CalledProcessError,
+    except (ValueError, OSError, KeyError, TypeError, configparser.Error, subprocess.CalledProcessError,
             xml.etree.ElementTree.ParseError) as error:
         print(f"due_checks.py: {error}", file=sys.stderr)
         return 2

@@ -3,6 +3,7 @@
 """Checks are due where their files changed, and nothing else is left out."""
 import contextlib
 import io
+import json
 import os
 import re
 import subprocess
@@ -112,20 +113,28 @@ class DueChecks(unittest.TestCase):
 
     def test_only_tests_that_ran_and_passed_are_noted(self):
         case = '<testcase name="{}" status="{}">{}</testcase>'
+        names = ("one.a", "one.b", "page.other", "page.some-page", "bone.a")
+        self.write("tests.json", json.dumps({"tests": [{"name": name} for name in names]}))
+        files = (self.root / "results.xml", self.root / "tests.json")
         for results, noted in (
                 ([("one.a", "run", ""), ("one.b", "run", "")], {"one"}),
                 ([("one.a", "run", ""), ("one.b", "fail", "<failure/>")], set()),
                 ([("one.a", "run", ""), ("one.b", "notrun", "<skipped/>")], set()),
                 ([("one.a", "run", ""), ("one.b", "run", "<skipped/>")], set()),
+                ([("one.a", "run", "")], set()),  # the other one was not asked for
                 ([("page.other", "run", ""), ("bone.a", "run", "")], {"page.other"}),
                 ([], set())):
             (self.root / ".ci/passed").unlink(missing_ok=True)
             self.write("results.xml", "<testsuite>" + "".join(case.format(*r) for r in results)
                        + "</testsuite>")
-            self.assertEqual(self.status("note", self.root / "results.xml"), 0)
+            self.assertEqual(self.status("note", *files), 0)
             self.assertEqual(self.due(), ALL - {"page.no"} - noted)
         self.write("results.xml", "<testsuite>")
-        self.assertEqual(self.status("note", self.root / "results.xml"), 2)
+        self.assertEqual(self.status("note", *files), 2)
+        self.assertEqual(self.status("note", files[0]), 2)
+        self.write("results.xml", "<testsuite/>")
+        self.write("tests.json", "[]")
+        self.assertEqual(self.status("note", *files), 2)
 
     def test_a_damaged_record_is_an_error(self):
         self.pass_all()
