@@ -30,6 +30,32 @@ TEST(Shading, WhereThereIsNoGradientOnlyTheAmbientPartIsLeft) {
   EXPECT_EQ(lit.added.g, 0);
 }
 
+TEST(Shading, NormalsAreWithinTheirError) {
+  std::mt19937 random(41);
+  std::uniform_real_distribution<double> both(-1, 1), exponent(-12, 12);
+  const auto component = [&] {
+    return static_cast<float>(both(random) * std::pow(10, exponent(random)));
+  };
+  double worst = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const Vec3<float> g{component(), component(), component()};
+    const float flat = i % 3 == 0 ? 0.0f : component() * component();
+    const Reflection<float> reflection{0, 1, 0, 1, std::fabs(flat)};
+    const Vec3<float> n = shading_normal(reflection, g);
+    long double square = static_cast<long double>(reflection.flat_square);
+    for (int c = 0; c < 3; ++c) square += static_cast<long double>(g[c]) * g[c];
+    for (int c = 0; c < 3; ++c) {
+      const long double exact = g[c] / std::sqrt(square);
+      if (!(std::fabs(exact) > 1e-30L)) continue;
+      worst = std::max(worst, static_cast<double>(std::fabs(n[c] / exact - 1)));
+    }
+  }
+  EXPECT_LE(worst, 5 * rounding_unit<float>);
+  EXPECT_GT(worst, 1 * rounding_unit<float>);
+  const Vec3<float> flat = shading_normal(Reflection<float>{0, 1, 0, 1, 0}, Vec3<float>{0, 0, 0});
+  EXPECT_EQ(length(flat), 0);
+}
+
 /// A cell as packets shade it, at random: gradients that turn a little or a lot.
 struct ShadedCell {
   GradientStretch<double> along;

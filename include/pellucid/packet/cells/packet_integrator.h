@@ -365,7 +365,7 @@ class PacketIntegrator {
     single_.cap = select(to_kink, up_to_kink, single_.cap);
     SpanPiece<float, N>& piece = lit_piece_;
     begin_piece(single_, transfer_, on, piece);
-    finish_piece(single_, transfer_, on, place_error_, largest_color_, piece);
+    finish_piece<false>(single_, transfer_, on, place_error_, largest_color_, piece);
     SegmentResult<F>& s = piece.found.segment;
     const F to = min(from + ahead * piece.place, F(1));
     if (light_.has_factor()) light_.weaken(piece, from, to, single_, largest_color_);

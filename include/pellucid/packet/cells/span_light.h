@@ -206,7 +206,16 @@ class SpanLight {
       end[k] = piece.length * (interval.at_lower + interval.slope * (data[k] - interval.lower));
     }
     // Plain numbers: an array of batches would be set to 0 first.
-    float rate[6][N], depth[6][N], lit_color[3][6][N];
+    float rate[6][N], depth[6][N], normal[3][6][N], lit_color[3][6][N];
+    // A pass of its own, in which the root and the quotient of one node wait for no other.
+    nodes.for_each([&](int j) noexcept {
+      const typename NodesOfLanes<N>::Weights at = nodes.value_weights(j);
+      const Vec3<F> n = shading_normal(light_.reflection,
+                                       Vec3<F>{at.sum(g[0].b), at.sum(g[1].b), at.sum(g[2].b)});
+      n.x.store(normal[0][j]);
+      n.y.store(normal[1][j]);
+      n.z.store(normal[2][j]);
+    });
     nodes.for_each([&](int j) noexcept {
       const typename NodesOfLanes<N>::Weights at = nodes.value_weights(j);
       const F value = at.sum(data);
@@ -218,11 +227,11 @@ class SpanLight {
       }
       const Rgb<F> unlit = color_at(
           transfer, clamp(value, piece.seen.color_lower, piece.seen.color_upper), lanes, known);
-      const Vec3<F> gradient{at.sum(g[0].b), at.sum(g[1].b), at.sum(g[2].b)};
+      const Vec3<F> n{F::load(normal[0][j]), F::load(normal[1][j]), F::load(normal[2][j])};
       const Vec3<F> position =
           light_.points > 0 ? of.along.position(nodes.position(j)) : Vec3<F>{F(0), F(0), F(0)};
       const Rgb<F> color =
-          light_up(light_.reflection, light_.light, light_.lights, gradient, position, to_eye_)
+          light_up_normal(light_.reflection, light_.light, light_.lights, n, position, to_eye_)
               .apply(unlit);
       color.r.store(lit_color[0][j]);
       color.g.store(lit_color[1][j]);

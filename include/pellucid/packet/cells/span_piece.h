@@ -179,8 +179,9 @@ void begin_piece(SpanLanes<T, N>& span, const Transfer& transfer, BatchMask<N> l
 }
 
 /// Integrates the piece that begin_piece() has found. `position_error`: how far a span's ends may
-/// be from where they are thought to be, world length. Colors are floats, of values in T.
-template <class T, int N, class Transfer>
+/// be from where they are thought to be, world length. Colors are floats, of values in T; without
+/// `colored` there is none, and `found` has its depth and opacity alone.
+template <bool colored, class T, int N, class Transfer>
 void finish_piece(SpanLanes<T, N>& span, const Transfer& transfer, BatchMask<N> lanes,
                   Batch<float, N> position_error, Batch<float, N> largest_color,
                   SpanPiece<T, N>& piece) noexcept {
@@ -219,7 +220,11 @@ void finish_piece(SpanLanes<T, N>& span, const Transfer& transfer, BatchMask<N> 
     piece.seen.color_lower = max(piece.seen.lower, interval.lower + within(interval.lower));
     piece.seen.color_upper = min(piece.seen.upper, interval.upper - within(interval.upper));
   }
-  piece.found = colored_piece(piece.seen, piece.spread, transfer, lanes, span.color);
+  if constexpr (colored) {
+    piece.found = colored_piece(piece.seen, piece.spread, transfer, lanes, span.color);
+  } else {
+    piece.found.segment = segment_of_depth(convert<float>(piece.seen.depth), Rgb<Single>{});
+  }
 
   // What rounding can do, as in segment/rounding.h.
   constexpr float u = rounding_unit<float>;
@@ -254,7 +259,7 @@ SpanPiece<T, N> next_piece(SpanLanes<T, N>& span, const BinnedTransfer& transfer
                            Batch<float, N> largest_color) noexcept {
   SpanPiece<T, N> piece;
   begin_piece(span, transfer, lanes, piece);
-  finish_piece(span, transfer, lanes, position_error, largest_color, piece);
+  finish_piece<true>(span, transfer, lanes, position_error, largest_color, piece);
   return piece;
 }
 

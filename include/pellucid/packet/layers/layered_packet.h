@@ -470,7 +470,7 @@ class LayeredPacket {
     piece.capped = piece.capped | (place < piece.place);
     piece.crosses = piece.crosses & !(place < piece.place);
     piece.place = place;
-    finish_piece(layer.span, layer.transfers, here, place_error_, largest_color_, piece);
+    finish_piece<false>(layer.span, layer.transfers, here, place_error_, largest_color_, piece);
     const Rgb<F> mean = color_at(
         layer.transfers, clamp(piece.seen.value, piece.seen.color_lower, piece.seen.color_upper),
         here, layer.span.color);
