@@ -196,8 +196,8 @@ def run(arguments):
 def main(arguments):
     try:
         return run(arguments)
-    except (ValueError, OSError, KeyError, TypeError, configparser.Error, subprocess.CalledProcessError,
-            xml.etree.ElementTree.ParseError) as error:
+    except (ValueError, OSError, KeyError, TypeError, configparser.Error,
+            subprocess.CalledProcessError, xml.etree.ElementTree.ParseError) as error:
         print(f"due_checks.py: {error}", file=sys.stderr)
         return 2
 
