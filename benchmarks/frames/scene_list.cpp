@@ -68,7 +68,7 @@ List scan(const SceneSelection& s) {
   };
   const bool wanted =
       s.filters.empty() || std::any_of(s.filters.begin(), s.filters.end(), named_by);
-  if (!wanted || !std::filesystem::exists(data.file)) return {};
+  if (!wanted || !scenes::why_missing(data.file).empty()) return {};
   return chosen(scenes::real_scenes(data, s.size), s, "outside");
 }
 
@@ -88,7 +88,7 @@ std::vector<std::vector<NamedScene> (*)(const SceneSelection&)> scene_groups() {
 std::vector<std::string> missing_scans() {
   std::vector<std::string> missing;
   for (const scenes::RealData& data : scenes::real_data()) {
-    if (!std::filesystem::exists(data.file)) missing.push_back(data.name);
+    if (!scenes::why_missing(data.file).empty()) missing.push_back(data.name);
   }
   return missing;
 }

@@ -54,10 +54,6 @@ std::vector<std::string> faults_of(const MatrixCell& cell, const GalleryEntry& e
 
 }  // namespace
 
-bool is_missing(const GalleryEntry& entry) {
-  return !entry.file.empty() && !std::filesystem::exists(entry.file);
-}
-
 DeviceRow check_on_device(const GalleryEntry& entry, const Exhibit& exhibit, std::size_t camera,
                           Device device, int size, const std::filesystem::path& cache) {
   MatrixOptions options;

@@ -24,9 +24,6 @@ struct DeviceRow {
   std::vector<std::string> faults;        ///< a sentence for each promise that was not kept
 };
 
-/// Whether the file that the scene reads is not there.
-bool is_missing(const GalleryEntry& entry);
-
 /// Renders the frames and holds them against the reference, whose frames `cache` keeps unless it is
 /// empty. A scene that devices cannot do must go to the CPU, and say so.
 DeviceRow check_on_device(const GalleryEntry& entry, const Exhibit& exhibit, std::size_t camera,

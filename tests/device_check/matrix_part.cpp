@@ -26,7 +26,7 @@ std::vector<GalleryEntry> chosen_scenes(const Arguments& arguments,
   int number = 0;
   for (GalleryEntry& entry : scenes::gallery()) {
     if (number++ % arguments.every != 0) continue;
-    if (scenes::is_missing(entry)) {
+    if (!entry.why_missing().empty()) {
       missing.push_back(entry.name);
     } else {
       chosen.push_back(std::move(entry));

@@ -42,6 +42,9 @@ struct GalleryEntry {
   /// Below this tolerance the grade `proved` is left out, and pixels of it may say that they are
   /// over it: where proofs take so many panels that a ray gives up.
   double least_proved = 0;
+
+  /// Returns why `make` cannot read its file here; empty: it can.
+  std::string why_missing() const;
 };
 
 using Gallery = std::vector<GalleryEntry>;

@@ -15,6 +15,9 @@ list(TRANSFORM scenes_sources PREPEND "${scenes_folder}/")
 target_sources(pellucid_test_scenes PRIVATE ${scenes_sources})
 target_include_directories(pellucid_test_scenes PUBLIC "${PROJECT_SOURCE_DIR}")
 target_compile_definitions(pellucid_test_scenes PRIVATE PELLUCID_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+if(TARGET pellucid_itk)
+  target_compile_definitions(pellucid_test_scenes PRIVATE PELLUCID_HAVE_ITK)
+endif()
 target_link_libraries(pellucid_test_scenes
   PUBLIC pellucid::scene
   PRIVATE pellucid::io Boost::headers pellucid_build_flags)

@@ -37,8 +37,8 @@ bool run(const char* file, bool check) {
   ReferenceTruth made;
   bool good = true;
   for (const GalleryEntry& entry : gallery()) {
-    if (!entry.file.empty() && !std::filesystem::exists(entry.file)) {
-      std::fprintf(stderr, "%s: %s is not there\n", entry.name.c_str(), entry.file.c_str());
+    if (const std::string why = entry.why_missing(); !why.empty()) {
+      std::fprintf(stderr, "%s: %s\n", entry.name.c_str(), why.c_str());
       good = false;
       continue;
     }

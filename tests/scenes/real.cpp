@@ -57,6 +57,14 @@ std::vector<RealData> real_data() {
            {128, 128, 128}}};
 }
 
+std::string why_missing(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return file.string() + " not found";
+#ifndef PELLUCID_HAVE_ITK
+  if (file.extension() == ".nrrd") return file.string() + " is read by ITK, which is not built in";
+#endif
+  return {};
+}
+
 VolumePointer read(const RealData& data) {
   ReadOptions options;
   if (data.raw_dimensions[0] > 0) {

@@ -20,6 +20,10 @@ struct RealData {
 /// sources).
 std::vector<RealData> real_data();
 
+/// Returns why a scene's file cannot be read here: it is not there, or what reads it was not built.
+/// Empty: it can.
+std::string why_missing(const std::filesystem::path& file);
+
 /// Throws Error where the file cannot be read.
 VolumePointer read(const RealData& data);
 

@@ -13,7 +13,7 @@ class RealScenes : public testing::TestWithParam<RealData> {};
 
 TEST_P(RealScenes, ExactMatchesTheReference) {
   const RealData& data = GetParam();
-  if (!std::filesystem::exists(data.file)) GTEST_SKIP() << data.file.string() << " not found";
+  if (const std::string why = why_missing(data.file); !why.empty()) GTEST_SKIP() << why;
   for (const NamedScene& named : real_scenes(data, {36, 30})) expect_exact(named);
 }
 

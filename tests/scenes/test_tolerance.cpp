@@ -70,9 +70,7 @@ void expect_is_given_again(const ReferenceFrame& kept, const Scene& scene) {
 
 TEST_P(ToleranceMatrix, NoPixelIsOver) {
   const GalleryEntry& entry = GetParam();
-  if (!entry.file.empty() && !std::filesystem::exists(entry.file)) {
-    GTEST_SKIP() << entry.file.string() << " not found";
-  }
+  if (const std::string why = entry.why_missing(); !why.empty()) GTEST_SKIP() << why;
   MatrixOptions options;
   options.tolerances.assign(std::begin(quick_tolerances), std::end(quick_tolerances));
   options.size = truth_size;

@@ -22,14 +22,14 @@ RayResult mean_of(const RayResult* rays, int count) {
   return mean.mean();
 }
 
-struct Place {
+struct PixelPlace {
   int column, row;
 };
 
 /// Returns the pixels of a tile, 4 × 4 after 4 × 4, so that those of a packet lie together.
-std::vector<Place> places_of(const Tile& tile) {
+std::vector<PixelPlace> places_of(const Tile& tile) {
   constexpr int group = 4;
-  std::vector<Place> places;
+  std::vector<PixelPlace> places;
   places.reserve(pixel_count(tile));
   for (int top = 0; top < tile.rows; top += group) {
     for (int left = 0; left < tile.columns; left += group) {
@@ -131,25 +131,25 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& ta
   const int level = task.level;
   PixelInterpolator* const between = task.between;
   const int samples = frame.scene.samples, rays_of_pixel = samples * samples;
-  const auto finish = [&](const Place& place, const RayResult& result) {
+  const auto finish = [&](const PixelPlace& place, const RayResult& result) {
     store_pixel(frame, result, image.index(place.column, place.row), image, report);
     if (level > 1) between->keep(place.column, place.row, result);
   };
-  std::vector<Place> places = places_of(tile);
+  std::vector<PixelPlace> places = places_of(tile);
   if (between != nullptr) {
-    std::erase_if(places,
-                  [&](const Place& place) { return between->is_done(place.column, place.row); });
+    std::erase_if(
+        places, [&](const PixelPlace& place) { return between->is_done(place.column, place.row); });
   }
   const std::size_t not_final_before = places.size();
   if (frame.region) {
-    std::erase_if(places, [&](const Place& place) {
+    std::erase_if(places, [&](const PixelPlace& place) {
       if (frame.seen.contains(place.column, place.row)) return false;
       finish(place, nothing_of_region());
       return true;
     });
   }
   if (between != nullptr && level < between->stride()) {
-    std::erase_if(places, [&](const Place& place) {
+    std::erase_if(places, [&](const PixelPlace& place) {
       RayResult result;
       if (!between->find(place.column, place.row, level, result)) return false;
       finish(place, result);
@@ -159,7 +159,7 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& ta
   }
   std::vector<RayPart> rays;
   rays.reserve(places.size() * static_cast<std::size_t>(rays_of_pixel));
-  for (const Place& place : places) {
+  for (const PixelPlace& place : places) {
     const Interval<double> range = range_of_rays(frame.scene, image.index(place.column, place.row));
     if (samples == 1) {
       rays.push_back({frame.camera.ray(place.column, place.row), range});
@@ -186,7 +186,7 @@ std::size_t render_tile(const Frame& frame, const Tile& tile, const TileTask& ta
   }
   report.rays += rays.size();
   const RayResult* of_pixel = results.data();
-  for (const Place& place : places) {
+  for (const PixelPlace& place : places) {
     RayResult pixel = mean_of(of_pixel, rays_of_pixel);
     if (frame.scene.backdrop && !frame.region) {
       put_over(*frame.scene.backdrop, image.index(place.column, place.row), pixel);

@@ -11,12 +11,12 @@ namespace pellucid {
 namespace {
 
 /// A tile's place on the way from the middle outwards: square rings, and around each.
-struct Place {
+struct TilePlace {
   int ring;
   double angle;
   Tile tile;
 
-  bool operator<(const Place& other) const {
+  bool operator<(const TilePlace& other) const {
     return std::tuple(ring, angle, tile.row, tile.column) <
            std::tuple(other.ring, other.angle, other.tile.row, other.tile.column);
   }
@@ -28,7 +28,7 @@ int divided_up(int n, int by) {
 
 /// Adds the tiles of the pixels (first_column + i·stride, first_row + j·stride).
 void add_lattice(ImageSize size, int level, int stride, int first_column, int first_row,
-                 std::vector<Place>& places) {
+                 std::vector<TilePlace>& places) {
   const int step = stride * tile_edge;
   const int across = divided_up(size.width, step), down = divided_up(size.height, step);
   for (int j = 0; j < down; ++j) {
@@ -48,9 +48,9 @@ void add_lattice(ImageSize size, int level, int stride, int first_column, int fi
   }
 }
 
-void append_in_order(std::vector<Place> places, std::vector<Tile>& tiles) {
+void append_in_order(std::vector<TilePlace> places, std::vector<Tile>& tiles) {
   std::sort(places.begin(), places.end());
-  for (const Place& place : places) tiles.push_back(place.tile);
+  for (const TilePlace& place : places) tiles.push_back(place.tile);
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ std::vector<Tile> make_tiles(ImageSize size, int preview) {
   std::vector<Tile> tiles;
   for (int level = preview; level >= 0; --level) {
     const int square = 1 << level;
-    std::vector<Place> places;
+    std::vector<TilePlace> places;
     if (level == preview) {
       add_lattice(size, level, square, 0, 0, places);
     } else {
@@ -74,7 +74,7 @@ std::vector<Tile> make_tiles(ImageSize size, int preview) {
 }
 
 std::vector<Tile> make_lattice(ImageSize size, int stride) {
-  std::vector<Place> places;
+  std::vector<TilePlace> places;
   add_lattice(size, 0, stride, 0, 0, places);
   std::vector<Tile> tiles;
   append_in_order(std::move(places), tiles);

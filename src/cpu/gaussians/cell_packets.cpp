@@ -17,9 +17,9 @@ namespace {
 constexpr double left_out_share = 1.0 / 16;
 
 /// Below, what budgets in binary32 lose and what folding in double does would be most of it.
-constexpr double min_tolerance = 1e-11;
+constexpr double min_cell_tolerance = 1e-11;
 
-GaussianPacketKernel kernel_for(InstructionSet set) {
+GaussianPacketKernel cell_kernel_for(InstructionSet set) {
   return PELLUCID_KERNEL_OF(set, pellucid_integrate_multivariate_cells);
 }
 
@@ -74,10 +74,10 @@ std::unique_ptr<const CellPackets> CellPackets::make(
     const Channels& channels, const MultivariateTransferFunction& transfer_function,
     const MultivariateBlocks& blocks, const MultichannelGrid& grid, const RayTolerance& wanted,
     InstructionSet instruction_set) {
-  const GaussianPacketKernel kernel = kernel_for(instruction_set);
+  const GaussianPacketKernel kernel = cell_kernel_for(instruction_set);
   const double largest_extinction = transfer_function.largest_extinction();
   if (kernel == nullptr || !suits_packets(channels, largest_extinction) ||
-      !(wanted.tolerance >= min_tolerance)) {
+      !(wanted.tolerance >= min_cell_tolerance)) {
     return nullptr;
   }
   std::unique_ptr<CellPackets> packets(new CellPackets());

@@ -12,7 +12,7 @@
 namespace pellucid {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double infinitely_far = std::numeric_limits<double>::infinity();
 
 /// Surfaces at one place are a mixture: with depths d_i = -ln(1 - opacity_i), their color is the
 /// mean of theirs, weighted by d_i.
@@ -97,7 +97,7 @@ class LayerMerge::ClippedStream {
  private:
   static LayerStretch absent() {
     LayerStretch nothing;
-    nothing.begin = nothing.end = infinity;
+    nothing.begin = nothing.end = infinitely_far;
     return nothing;
   }
   void advance() {
@@ -147,7 +147,7 @@ LayerMerge::~LayerMerge() = default;
 LayerMerge::LayerMerge(LayerMerge&&) noexcept = default;
 
 Interval<double> LayerMerge::start(const RayPart& part) {
-  inside_ = {infinity, -infinity};
+  inside_ = {infinitely_far, -infinitely_far};
   for (ClippedStream& stream : streams_) {
     const Interval<double> own = stream.start(part);
     if (own.empty()) continue;
@@ -161,7 +161,7 @@ Interval<double> LayerMerge::start(const RayPart& part) {
 
 bool LayerMerge::next(MergedPart& part) {
   for (;;) {
-    double nearest = infinity;
+    double nearest = infinitely_far;
     switch (state_) {
       case State::surfaces_before:
         if (next_surface(at_, part, nearest)) return true;

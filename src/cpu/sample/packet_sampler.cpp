@@ -9,9 +9,9 @@
 namespace pellucid {
 namespace {
 
-using Kernel = void (*)(const PellucidSamplerJob*);
+using SamplerKernel = void (*)(const PellucidSamplerJob*);
 
-Kernel sampler_of(InstructionSet set) {
+SamplerKernel sampler_of(InstructionSet set) {
   return PELLUCID_KERNEL_OF(set, pellucid_sample_packets);
 }
 
@@ -21,7 +21,7 @@ std::unique_ptr<const PacketSamplerTracer> PacketSamplerTracer::make(
     const Volume& volume, const BlockClasses& classes, const PiecewiseLinear<float>& transfer,
     const PreintegratedTable* preintegrated, const PacketLight* light, double step, double stop,
     std::optional<InstructionSet> instruction_set) {
-  const Kernel kernel = sampler_of(packet_instruction_set(instruction_set));
+  const SamplerKernel kernel = sampler_of(packet_instruction_set(instruction_set));
   double largest_extinction = 0;
   for (int i = 0; i < transfer.count; ++i) {
     largest_extinction = std::max<double>(largest_extinction, transfer.material[i].extinction);
@@ -38,7 +38,7 @@ PacketSamplerTracer::PacketSamplerTracer(const Volume& volume, const BlockClasse
                                          const PiecewiseLinear<float>& transfer,
                                          const PreintegratedTable* preintegrated,
                                          const PacketLight* light, double step, double stop,
-                                         Kernel kernel)
+                                         SamplerKernel kernel)
     : volume_(volume),
       records_(transfer),
       preintegrated_(preintegrated != nullptr ? *preintegrated : PreintegratedTable{}),

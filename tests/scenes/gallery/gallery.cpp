@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/scenes/real.h"
+
 namespace pellucid::scenes {
 namespace {
 
@@ -31,6 +33,10 @@ std::shared_ptr<const Image> make_backdrop(const Camera& camera, ImageSize size)
 }
 
 }  // namespace
+
+std::string GalleryEntry::why_missing() const {
+  return file.empty() ? std::string() : scenes::why_missing(file);
+}
 
 Gallery gallery() {
   Gallery all;
