@@ -111,12 +111,16 @@ TransferFunction grey_colors(const MeshChannels& mesh) {
 }
 
 LabelTable default_label_table(const LabelVolume& labels, std::optional<double> extinction) {
+  return default_label_table(labels.labels(),
+                             extinction.value_or(default_label_extinction(labels.volume())));
+}
+
+LabelTable default_label_table(const std::vector<std::int32_t>& labels, double extinction) {
   std::vector<LabelStyle> styles;
-  const double each = extinction.value_or(default_label_extinction(labels.volume()));
-  for (const std::int32_t label : labels.labels()) {
-    if (label != 0) styles.push_back({label, "", {}, each});
+  for (const std::int32_t label : labels) {
+    if (label != 0) styles.push_back({label, "", {}, extinction});
   }
-  if (styles.empty()) styles.push_back({0, "", {}, each});
+  if (styles.empty()) styles.push_back({0, "", {}, extinction});
   const std::vector<Rgb<double>> colors = distinct_colors(std::vector<double>(styles.size(), 0.75));
   // Neighbors in the list, which mostly are neighbors in the data, get hues that are far apart.
   std::size_t step = std::max<std::size_t>(1, colors.size() * 382 / 1000);

@@ -59,10 +59,23 @@ std::vector<RealData> real_data() {
 
 std::string why_missing(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return file.string() + " not found";
-#ifndef PELLUCID_HAVE_ITK
-  if (file.extension() == ".nrrd") return file.string() + " is read by ITK, which is not built in";
+#ifdef PELLUCID_HAVE_ITK
+  constexpr bool has_itk = true;
+#else
+  constexpr bool has_itk = false;
 #endif
-  return {};
+#ifdef PELLUCID_HAVE_VTK
+  constexpr bool has_vtk = true;
+#else
+  constexpr bool has_vtk = false;
+#endif
+  const std::string extension = file.extension().string();
+  const bool is_of_vtk = extension == ".vtk" || extension == ".vtu" || extension == ".ex2";
+  const char* reader = nullptr;
+  if (!has_itk && extension == ".nrrd") reader = "ITK";
+  if (!has_vtk && is_of_vtk) reader = "VTK";
+  if (reader == nullptr) return {};
+  return file.string() + " is read by " + reader + ", which is not built in";
 }
 
 VolumePointer read(const RealData& data) {

@@ -45,6 +45,8 @@ TransferFunction grey_colors(const MeshChannels& mesh);
 /// labels that follow each other, and one extinction; default_label_extinction() if none is given.
 /// A segmentation without other labels shows 0.
 LabelTable default_label_table(const LabelVolume& labels, std::optional<double> extinction = {});
+/// Returns the same for labels in ascending order, whose extinction is `extinction`.
+LabelTable default_label_table(const std::vector<std::int32_t>& labels, double extinction);
 /// Returns the extinction that makes a label opaque to one half on a two-hundredth of the longest
 /// way through the volume.
 double default_label_extinction(const Volume& volume);

@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -17,6 +18,9 @@
 
 #include "meshes/load_mesh_step.h"
 #include "pellucid/io/film.h"
+#include "pellucid/scene/defaults.h"
+#include "pellucid/scene/error.h"
+#include "pellucid/scene/presets.h"
 #include "scene/layer_functions.h"
 
 namespace pellucid {
@@ -118,9 +122,11 @@ class PooledVolume {
       values_;
 };
 
-/// Returns whether a layer leaves something to its data: which function, or where it lies.
+/// Returns whether a layer leaves something to its data: which function, or where it lies, or which
+/// labels there are.
 bool leaves_open(const LayerDescription& layer) {
-  if (layer.labels || layer.mask || !layer.channels.empty()) return false;
+  if (layer.labels) return layer.labels->styles.empty() && layer.labels->table.empty();
+  if (layer.mask || !layer.channels.empty()) return false;
   if (layer.mesh && layer.mesh->channels.size() > 1) return false;
   if (!layer.transfer_function) return true;
   const auto* const preset = std::get_if<PresetDescription>(&*layer.transfer_function);
@@ -137,36 +143,211 @@ void write_look(Look look, LayerDescription& layer) {
   layer.function_change = {};
 }
 
-/// Returns whether there is something to be chosen. `of_first`: the look that the first step has,
-/// of layers that take one.
-bool choose(LayerDescription& layer, const std::optional<Look>& of_first, const Volume& pooled) {
+/// Gives a surface whose colors are a preset over the range of its data those over these data.
+template <class Surface, class Data>
+void write_colors(Surface& surface, const Data& data) {
+  if (!surface.written_colors) return;
+  const auto* const preset = std::get_if<PresetDescription>(surface.written_colors.get());
+  if (preset == nullptr || preset->range) return;
+  surface.colors =
+      std::make_shared<const TransferFunction>(make_preset(preset->name, data, preset->range));
+  surface.written_colors.reset();
+}
+
+/// Chooses the function of a layer without a look, and the colors of its surfaces. Data: a volume
+/// or a mesh. Returns whether there is something to be chosen.
+template <class Data>
+bool choose_function(LayerDescription& layer, const Data& data) {
   const FunctionChange& change = layer.function_change;
-  if (of_first) {
-    if (of_first->as_labels) return false;
-    Look look = choose_look(pooled, of_first->name, change);
-    look.reason = of_first->reason;
-    write_look(std::move(look), layer);
-    return true;
-  }
-  if (layer.transfer_function
-          ? std::holds_alternative<OpacityTable>(*layer.transfer_function) ||
-                std::holds_alternative<MultivariateDescription>(*layer.transfer_function)
-          : layer.shows_surfaces()) {
+  if (layer.transfer_function &&
+      (std::holds_alternative<OpacityTable>(*layer.transfer_function) ||
+       std::holds_alternative<MultivariateDescription>(*layer.transfer_function))) {
     return false;
   }
-  layer.transfer_function = changed(function_on(pooled, layer), change, pooled).points();
+  layer.transfer_function = changed(function_on(data, layer), change, data).points();
   layer.function_change = {};
+  for (Isosurface& surface : layer.isosurfaces) write_colors(surface, data);
+  for (Slice& slice : layer.slices) write_colors(slice, data);
   return true;
 }
 
-/// Lays the function of a mesh over the values of all steps: a mesh of all of them there is none.
-/// `mesh` is that of the step before, and becomes that of this one.
-void widen(std::array<double, 2>& range, const MeshSource& source,
-           std::shared_ptr<const MeshChannels>& mesh, const ParallelFor& parallel) {
-  mesh = load_mesh_step(source, mesh.get(), parallel).mesh;
-  const VolumeStatistics& values = mesh->statistics(0);
-  if (values.finite == 0) return;
-  range = {std::min(range[0], values.minimum), std::max(range[1], values.maximum)};
+/// The labels that occur at any of several steps.
+class PooledLabels {
+ public:
+  /// Adds those of a volume. Throws Error if its values are no labels.
+  void add(Volume volume) {
+    const LabelVolume labels(std::make_shared<const Volume>(std::move(volume)));
+    labels_.insert(labels.labels().begin(), labels.labels().end());
+    if (!extinction_) extinction_ = default_label_extinction(labels.volume());
+  }
+
+  std::size_t size() const noexcept { return labels_.size(); }
+  std::vector<LabelStyle> styles(std::optional<double> extinction) const {
+    return default_label_table(std::vector<std::int32_t>(labels_.begin(), labels_.end()),
+                               extinction.value_or(extinction_.value_or(1)))
+        .styles();
+  }
+
+ private:
+  std::set<std::int32_t> labels_;
+  std::optional<double> extinction_;
+};
+
+/// What is read of the steps of one source.
+class StepReader {
+ public:
+  StepReader(FieldSource source, const std::function<bool()>& ended)
+      : source_(std::move(source)), ended_(ended) {}
+
+  /// Calls visit(volume) with each of these steps that can be read: those that cannot matter once
+  /// they are shown. Returns false where it was ended. Throws Error where none can be read.
+  template <class Visit>
+  bool visit(const std::vector<double>& steps, const Visit& visit) {
+    std::size_t failed = 0;
+    for (const double step : steps) {
+      if (ended_ && ended_()) return false;
+      source_.options.time = step;
+      std::optional<Volume> volume;
+      try {
+        volume.emplace(load_field(source_));
+      } catch (const Error&) {
+        if (++failed == steps.size()) throw;
+        continue;
+      }
+      visit(*std::move(volume));
+    }
+    return true;
+  }
+
+ private:
+  FieldSource source_;
+  const std::function<bool()>& ended_;
+};
+
+/// Returns whether a look is for values that may be labels.
+bool is_of_labels(const Look& look) {
+  return look.as_labels || look.name == "mask";
+}
+
+/// Returns the look that most of the steps have, the first of several. That of labels counts where
+/// all steps have it: an initial condition has few values.
+const Look& of_most(const std::vector<Look>& looks) {
+  const bool are_labels = std::ranges::all_of(looks, is_of_labels);
+  const Look* best = &looks.front();
+  std::ptrdiff_t most = 0;
+  for (const Look& look : looks) {
+    if (is_of_labels(look) && !are_labels) continue;
+    const std::ptrdiff_t count = std::ranges::count(looks, look.name, &Look::name);
+    if (count > most) {
+      most = count;
+      best = &look;
+    }
+  }
+  return *best;
+}
+
+/// Takes a layer's field for labels.
+void make_labels(LayerDescription& layer) {
+  if (!layer.labels) layer.labels = LabelSource{std::exchange(layer.field, {}), {}, {}, {}};
+}
+
+/// Chooses the labels of a layer from all of these steps. Returns false where it was ended.
+bool choose_labels(LayerDescription& layer, const std::vector<double>& steps,
+                   const std::function<bool()>& ended) {
+  PooledLabels labels;
+  StepReader reader(layer.labels ? layer.labels->field : layer.field, ended);
+  const auto add = [&](Volume volume) {
+    try {
+      labels.add(std::move(volume));
+    } catch (const Error&) {
+      // The picture of that step says it.
+    }
+  };
+  if (!reader.visit(steps, add)) return false;
+  make_labels(layer);
+  layer.labels->styles = labels.styles(layer.labels->extinction);
+  return true;
+}
+
+/// What was found out of a layer.
+enum class Chosen { nothing, something, ended };
+
+Chosen choose_of_volume(LayerDescription& layer, const std::vector<double>& all,
+                        const std::function<bool()>& ended) {
+  const auto as_labels = [&] {
+    return choose_labels(layer, all, ended) ? Chosen::something : Chosen::ended;
+  };
+  if (layer.labels) return as_labels();
+  const std::vector<double> steps = chosen(all);
+  const bool has_look = takes_look(layer);
+  std::vector<Look> looks;
+  PooledVolume pooled(steps.size());
+  std::optional<PooledLabels> labels(std::in_place);
+  const bool is_whole = StepReader(layer.field, ended).visit(steps, [&](Volume volume) {
+    if (has_look && (looks.empty() || layer.look->name.empty())) {
+      looks.push_back(look_of(volume, layer));
+      if (!is_of_labels(looks.back())) labels.reset();
+    }
+    pooled.add(volume);
+    if (!has_look || !labels) return;
+    try {
+      labels->add(std::move(volume));
+    } catch (const Error&) {
+      labels.reset();  // two values that are no labels
+    }
+  });
+  if (!is_whole) return Chosen::ended;
+  if (!has_look) {
+    return choose_function(layer, pooled.take()) ? Chosen::something : Chosen::nothing;
+  }
+  Look look = of_most(looks);
+  const bool is_asked_for = !layer.look->name.empty();
+  if (look.as_labels || (!is_asked_for && labels && labels->size() > 2)) {
+    if (!look.as_labels) {
+      look = Look();
+      look.name = "labels";
+      look.reason = "whole numbers that look like labels";
+      look.as_labels = true;
+    }
+    if (layer.look->chosen) layer.look->chosen(look);
+    layer.look.reset();
+    return as_labels();
+  }
+  Look of_all = choose_look(pooled.take(), look.name, layer.function_change);
+  of_all.reason = look.reason;
+  write_look(std::move(of_all), layer);
+  return Chosen::something;
+}
+
+/// Chooses the function of a mesh on its first step, over the range of the values of all: a mesh of
+/// all of them there is none.
+Chosen choose_of_mesh(LayerDescription& layer, const std::vector<double>& steps,
+                      const ParallelFor& parallel, const std::function<bool()>& ended) {
+  MeshSource source = *layer.mesh;
+  std::shared_ptr<const MeshChannels> mesh;
+  const auto load = [&](double step) {
+    source.options.time = step;
+    mesh = load_mesh_step(source, mesh.get(), parallel).mesh;
+  };
+  if (!layer.function_change.range) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    std::array<double, 2> range{infinity, -infinity};
+    for (const double step : steps) {
+      if (ended && ended()) return Chosen::ended;
+      load(step);
+      const VolumeStatistics& values = mesh->statistics(0);
+      if (values.finite == 0) continue;
+      range = {std::min(range[0], values.minimum), std::max(range[1], values.maximum)};
+    }
+    if (!(range[0] < range[1])) return Chosen::nothing;
+    layer.function_change.range = RangeEnds{RangeEnd{range[0]}, RangeEnd{range[1]}};
+  }
+  load(steps.front());
+  if (takes_look(layer)) {
+    write_look(look_of(*mesh, layer), layer);
+    return Chosen::something;
+  }
+  return choose_function(layer, *mesh) ? Chosen::something : Chosen::nothing;
 }
 
 }  // namespace
@@ -177,35 +358,12 @@ std::vector<std::size_t> choose_for_all_steps(SceneDescription& description,
   std::vector<std::size_t> changed_layers;
   for (std::size_t i = 0; i < description.layers.size(); ++i) {
     LayerDescription& layer = description.layers[i];
-    const std::vector<double> steps = chosen(times.of(i));
+    const std::vector<double>& steps = times.of(i);
     if (steps.size() < 2 || !leaves_open(layer)) continue;
-    if (layer.mesh) {
-      if (layer.function_change.range) continue;
-      constexpr double infinity = std::numeric_limits<double>::infinity();
-      std::array<double, 2> range{infinity, -infinity};
-      MeshSource source = *layer.mesh;
-      std::shared_ptr<const MeshChannels> mesh;
-      for (const double step : steps) {
-        if (ended && ended()) return {};
-        source.options.time = step;
-        widen(range, source, mesh, parallel);
-      }
-      if (!(range[0] < range[1])) continue;
-      layer.function_change.range = RangeEnds{RangeEnd{range[0]}, RangeEnd{range[1]}};
-      changed_layers.push_back(i);
-      continue;
-    }
-    FieldSource source = layer.field;
-    std::optional<Look> of_first;
-    PooledVolume pooled(steps.size());
-    for (const double step : steps) {
-      if (ended && ended()) return {};
-      source.options.time = step;
-      const Volume volume = load_field(source);
-      if (step == steps.front() && takes_look(layer)) of_first = look_of(volume, layer);
-      pooled.add(volume);
-    }
-    if (choose(layer, of_first, pooled.take())) changed_layers.push_back(i);
+    const Chosen found = layer.mesh ? choose_of_mesh(layer, chosen(steps), parallel, ended)
+                                    : choose_of_volume(layer, steps, ended);
+    if (found == Chosen::ended) return {};
+    if (found == Chosen::something) changed_layers.push_back(i);
   }
   return changed_layers;
 }

@@ -124,6 +124,11 @@ void resolve_time(SceneDescription& description) {
 }
 
 void copy_choice(const LayerDescription& from, LayerDescription& to) {
+  if (from.labels && !to.mesh) {
+    if (!to.labels) to.labels = LabelSource{std::exchange(to.field, {}), {}, {}, {}};
+    to.labels->styles = from.labels->styles;
+  }
+  to.slices = from.slices;
   to.transfer_function = from.transfer_function;
   to.function_change = from.function_change;
   to.shading = from.shading;

@@ -7,10 +7,12 @@ namespace pellucid {
 
 /// Returns whether choose_look() says how a layer is shown.
 bool takes_look(const LayerDescription& description);
-/// Returns the look of such a layer with these data. Throws Error.
+/// Return the look of such a layer with these data. Throw Error.
 Look look_of(const Volume& volume, const LayerDescription& description);
-/// Returns the function of one variable that a description says of a layer, or leaves to these
-/// data, before function_change. An opacity table is none. Throws Error.
+Look look_of(const MeshChannels& mesh, const LayerDescription& description);
+/// Return the function of one variable that a description says of a layer, or leaves to these
+/// data, before function_change. An opacity table is none. Throw Error.
 TransferFunction function_on(const Volume& volume, const LayerDescription& description);
+TransferFunction function_on(const MeshChannels& mesh, const LayerDescription& description);
 
 }  // namespace pellucid

@@ -376,8 +376,15 @@ Look look_of(const Volume& volume, const LayerDescription& description) {
   return chosen_look(volume, description);
 }
 
+Look look_of(const MeshChannels& mesh, const LayerDescription& description) {
+  return chosen_look(mesh, description);
+}
+
 TransferFunction function_on(const Volume& volume, const LayerDescription& description) {
   return medium_function(description, FitTarget{}, volume);
+}
+TransferFunction function_on(const MeshChannels& mesh, const LayerDescription& description) {
+  return medium_function(description, FitTarget{}, mesh);
 }
 
 std::vector<ChannelSource> layer_channels(const LayerDescription& description) {
