@@ -53,12 +53,31 @@ void MeshOptions::add_to(CommandLine& command, bool with_arrays) {
           ->option_text("FILE"));
 }
 
+namespace {
+
+void refuse_option(const Option& option, const std::string& what) {
+  if (option.count() == 0) return;
+  throw UsageError(fmt::format("{} applies to mesh files, not to {}", option.get_name(), what));
+}
+
+bool is_of_time(const Option& option) {
+  return option.get_name().starts_with("--time");
+}
+
+}  // namespace
+
 void MeshOptions::refuse(const std::string& what) const {
   for (const Option* option : given) {
-    if (option->count() > 0) {
-      throw UsageError(
-          fmt::format("{} applies to mesh files, not to {}", option->get_name(), what));
+    if (option->count() > 0 && is_of_time(*option)) {
+      throw UsageError(fmt::format("{}: {} has no steps in time", option->get_name(), what));
     }
+    refuse_option(*option, what);
+  }
+}
+
+void MeshOptions::refuse_but_times(const std::string& what) const {
+  for (const Option* option : given) {
+    if (!is_of_time(*option)) refuse_option(*option, what);
   }
 }
 

@@ -32,6 +32,8 @@ struct MeshOptions {
   void add_to(CommandLine& command, bool with_arrays);
   /// Throws UsageError where an option is used, saying that it does not apply to `what`.
   void refuse(const std::string& what) const;
+  /// Throws the same for options other than those of time.
+  void refuse_but_times(const std::string& what) const;
   /// Puts the time into the options of a volume or a mesh. Throws UsageError.
   template <class Options>
   void set_time(Options& options) const {

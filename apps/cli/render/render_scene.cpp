@@ -324,6 +324,25 @@ void add_layers(const RenderArguments& arguments, SceneDescription& description)
   }
 }
 
+/// Puts --time and --time-between into a scene of other data than the one INPUT, which all have
+/// their step at that time.
+void set_time_of_all(const RenderArguments& arguments, SceneDescription& description) {
+  const MeshOptions& given = arguments.mesh;
+  if (description.layers.size() == 1 && !arguments.is_scene() && !arguments.input.empty()) return;
+  if (!given.time && given.time_between.empty()) return;
+  if (given.time) description.time = given.time;
+  const bool has_time = description.time.has_value() || given.has_times;
+  const TimeBetween between = between_steps(given.time_between, has_time);
+  const auto set = [&](auto& options) {
+    if (!arguments.is_scene()) options.time.reset();
+    if (!given.time_between.empty()) options.time_between = between;
+  };
+  for (LayerDescription& layer : description.layers) {
+    visit_sources(layer, [&](FieldSource& field) { set(field.options); });
+    if (layer.mesh) set(layer.mesh->options);
+  }
+}
+
 SceneDescription describe(const RenderArguments& arguments,
                           std::vector<std::string>& import_notes) {
   SceneDescription description;
@@ -331,7 +350,7 @@ SceneDescription describe(const RenderArguments& arguments,
   const std::filesystem::path input = arguments.input;
   if (arguments.is_scene()) {
     arguments.volume.refuse("a scene; write it into the scene's field");
-    arguments.mesh.refuse("a scene; write it into the scene's mesh");
+    arguments.mesh.refuse_but_times("a scene; write it into the scene's mesh");
     description = parse_scene(read_text_file(input), arguments.input, input.parent_path());
     layer = description.layers.front();
   } else if (is_mesh(arguments.input, arguments.mesh)) {
@@ -341,7 +360,7 @@ SceneDescription describe(const RenderArguments& arguments,
     set_volume(arguments, layer);
     set_own_colors(arguments, layer, import_notes);
   } else {
-    arguments.mesh.refuse("channels of volumes");
+    arguments.mesh.refuse_but_times("channels of volumes");
   }
   if (arguments.has_only_added_layers()) {
     description.layers.clear();
@@ -361,6 +380,7 @@ SceneDescription describe(const RenderArguments& arguments,
   }
   arguments.light.apply(description);
   add_layers(arguments, description);
+  set_time_of_all(arguments, description);
   if (!arguments.camera.empty()) {
     description.camera = parse_camera(read_text_file(arguments.camera), arguments.camera);
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <string_view>
 #include <utility>
 
@@ -335,10 +336,20 @@ class Reader {
   void read_times() {
     if (!axes_.components) return;
     for (const ArrayBeside& array : arrays_) {
-      if (array.numbers.empty() || !is_coordinate(array, shape_)) continue;
-      if (coordinate_role(array.name) != AxisRole::time) continue;
-      if (array.shape[0] != shape_[*axes_.components] || !is_finite(array.numbers)) continue;
+      if (coordinate_role(array.name) != AxisRole::time || array.shape.size() != 1) continue;
+      const std::int64_t times = array.shape[0], steps = shape_[*axes_.components];
+      if (times != steps) {
+        if (times < 2) continue;
+        tell("array " + array.name + " has " + std::to_string(times) + " times, and the fourth " +
+             "axis " + std::to_string(steps) + " values; it is not read");
+        taken_.push_back(&array);
+        continue;
+      }
+      const auto is_missing = [](double number) { return !std::isfinite(number); };
+      if (std::ranges::all_of(array.numbers, is_missing)) continue;
+      // Steps whose time is missing are never the nearest.
       found_.times = array.numbers;
+      std::ranges::replace_if(found_.times, is_missing, std::numeric_limits<double>::quiet_NaN());
       taken_.push_back(&array);
       return;
     }

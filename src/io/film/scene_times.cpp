@@ -38,14 +38,23 @@ void visit_steps(const std::vector<std::vector<std::vector<double>>>& times,
   }
 }
 
-/// Returns whether one component of a file is chosen, which may be a step. Images have channels
-/// beside their times.
-bool has_component(const FieldSource& source) {
+/// Returns whether the component that is chosen is one of these steps, and not of what is there at
+/// each. Images have channels beside their times.
+bool is_one_step(const FieldSource& source, const StepTimes& steps) {
   const std::string extension = source.file.extension().string();
   const bool is_image = extension == ".tif" || extension == ".tiff" || extension == ".ome";
-  return source.options.component && !is_image;
+  if (!source.options.component || is_image || steps.times.empty()) return false;
+  ReadOptions at_step = source.options;
+  at_step.time = steps.times.front();
+  at_step.part = {};
+  at_step.note = {};
+  try {
+    return component_count(source.file, at_step) < 2;
+  } catch (const Error&) {
+    return true;  // A time or a component is given, not both.
+  }
 }
-bool has_component(const MeshSource&) {
+bool is_one_step(const MeshSource&, const StepTimes&) {
   return false;
 }
 
@@ -57,8 +66,8 @@ SceneTimes::SceneTimes(const SceneDescription& description) {
   std::vector<std::string> units;
   for (std::size_t i = 0; i < scene.layers.size(); ++i) {
     visit_timed(scene.layers[i], [&](const auto& source, const auto& options) {
-      const bool is_still = options.time || has_component(source);
-      StepTimes steps = is_still ? StepTimes() : source_steps(source);
+      StepTimes steps = options.time ? StepTimes() : source_steps(source);
+      if (is_one_step(source, steps)) steps = {};
       if (!steps.times.empty()) units.push_back(std::move(steps.unit));
       times_[i].push_back(std::move(steps.times));
       left_out_ += std::erase_if(times_[i].back(), [](double time) {

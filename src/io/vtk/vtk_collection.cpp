@@ -120,7 +120,15 @@ std::vector<FileStep> image_steps(const fs::path& path) {
     throw Error(path.string() + ": " + error.what());
   }
   const bool is_one_each = std::ranges::adjacent_find(steps, {}, &FileStep::time) == steps.end();
-  return is_one_each && steps.size() > 1 ? steps : std::vector<FileStep>();
+  if (is_one_each) return steps;
+  if (std::ranges::none_of(steps, [](const FileStep& step) { return is_image(step.file); })) {
+    return {};
+  }
+  const auto twice = std::ranges::adjacent_find(steps, {}, &FileStep::time);
+  throw Error(path.string() + ": " + one_line(twice->file.filename().string()) + " and " +
+              one_line((twice + 1)->file.filename().string()) +
+              " have the same time, and images are read one at each; give one of them another " +
+              "timestep, or open one of them");
 }
 
 }  // namespace
