@@ -38,11 +38,12 @@ class LabelLooks {
     }
   }
 
-  /// Returns the look of a label; null: it is transparent.
-  const LabelStyle* find(std::int32_t label) const {
+  /// Returns the look of a label, which lives as long as this; null: it is transparent.
+  const LabelStyle* find(std::int32_t label) const& {
     const auto found = looks_.find(label);
     return found == looks_.end() ? nullptr : &found->second;
   }
+  const LabelStyle* find(std::int32_t label) const&& = delete;
 
  private:
   std::unordered_map<std::int32_t, LabelStyle> looks_;
@@ -153,7 +154,8 @@ Json located_json(const Scene& scene, const Locate& at) {
       values.push_back({{"layer", i}, {"channel", names[c]}, {"value", found[c]}});
     }
     if (const auto label = data.label_at(at.position)) {
-      const LabelStyle* const look = LabelLooks(layer).find(*label);
+      const LabelLooks looks(layer);
+      const LabelStyle* const look = looks.find(*label);
       labels.push_back(label_json({i, *label, look == nullptr ? "" : look->name,
                                    look == nullptr ? Rgb<double>{} : look->color}));
     }

@@ -13,8 +13,12 @@ StepsChoice::StepsChoice(SceneDescription asked, SceneTimes times, ParallelFor p
                          parallel = std::move(parallel), done = std::move(done)]() mutable {
     Outcome outcome;
     try {
-      outcome.layers =
-          choose_for_all_steps(asked, times, parallel, [this] { return cancelled_.load(); });
+      outcome.layers = choose_for_all_steps(asked, times, parallel,
+                                            {[this] { return cancelled_.load(); },
+                                             [&](const std::string& note) {
+                                               outcome.notes +=
+                                                   (outcome.notes.empty() ? "" : "; ") + note;
+                                             }});
     } catch (const std::bad_alloc&) {
       outcome.error = "there is not enough memory to read all steps for one function";
     } catch (const std::exception& error) {

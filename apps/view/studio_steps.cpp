@@ -53,6 +53,10 @@ void Studio::finish_choice() {
     choice_failure_ = std::string("the function is that of one step, not of all: ") + error.what();
     tell_choice_failure();
   }
+  if (!outcome->notes.empty()) {
+    choice_failure_ = outcome->notes;
+    tell_choice_failure();
+  }
   if (!is_changed) return;
   stale_ = true;
   frames_.forget_image();

@@ -52,7 +52,7 @@ std::vector<double> mesh_times(const std::filesystem::path& path, const MeshRead
 // Functions of all steps: that of the step that is shown stands for them.
 
 std::vector<std::size_t> choose_for_all_steps(SceneDescription&, const SceneTimes&,
-                                              const ParallelFor&, const std::function<bool()>&) {
+                                              const ParallelFor&, const StepsAsked&) {
   return {};
 }
 

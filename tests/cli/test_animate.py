@@ -11,7 +11,7 @@ import subprocess
 import time
 import unittest
 
-from program import PROGRAM, ProgramTest, pixel, png, png_texts
+from program import PROGRAM, ProgramTest, npy, pixel, png, png_texts
 
 FFMPEG = shutil.which("ffmpeg")
 TIMES = [0.0, 0.5, 2.0, 4.0]
@@ -280,6 +280,124 @@ class Animate(ProgramTest):
         self.write("scene.json", json.dumps(scene).encode())
         self.succeed("render", "scene.json", "-o", "o.png")
         self.assertLessEqual(json.loads(self.function("o.png"))["points"][-1]["value"], 2)
+
+    def blob(self, step, side=8):
+        """Distances from a middle that moves with the step."""
+        return [((x - 3 - step / 2) ** 2 + (y - 3.5) ** 2 + (z - 3.5) ** 2) ** 0.5
+                for z in range(side) for y in range(side) for x in range(side)]
+
+    def expect_film_of_pictures(self, count, *arguments):
+        """Frames are the pictures of their times, no two are the same, and none is empty."""
+        self.run_in_film("render", *arguments, "--time", "0", "-o", "o.png",
+                         "--save-scene", "saved.json")
+        camera = json.loads(self.read("saved.json"))["camera"]
+        self.write("camera.json", json.dumps(camera).encode())
+        self.run_in_film("animate", *arguments, "--camera", "camera.json", "-o", "f/%d.png")
+        frames = [self.picture(f"f/{i}.png") for i in range(count)]
+        for i, frame in enumerate(frames):
+            self.run_in_film("render", *arguments, "--camera", "camera.json", "--time", str(i),
+                             "-o", "o.png")
+            self.assertEqual(self.picture("o.png"), frame, (i, arguments))
+            self.assertEqual(frames.count(frame), 1, (i, arguments))
+            self.assertGreater(max(max(row) for row in frame[3]), 0, (i, arguments))
+        shutil.rmtree(self.path("f"))
+        return frames
+
+    def run_in_film(self, *arguments):
+        return self.succeed(*arguments, "--size", "16", "--background", "transparent")
+
+    def test_labels_of_all_steps_have_colors(self):
+        values = [label if distance < 2.5 else 0 for step, label in enumerate((1, 2, 3, 5))
+                  for distance in self.blob(step)]
+        self.write("labels.npy", npy(values, (8, 8, 8, 4), "<u1"))
+        axes = ("--array-axes", "tzyx")
+        by_look = self.expect_film_of_pictures(4, "labels.npy", *axes, "--look", "labels")
+        self.assertEqual(self.expect_film_of_pictures(4, "labels.npy", *axes), by_look)
+        # Each label has a color of its own.
+        middles = {pixel(frame, 8, 8)[:3] for frame in by_look}
+        self.assertEqual(len(middles), 4)
+        scene = {"layers": [{"labels": {"file": "labels.npy", "axes": "tzyx"}}]}
+        self.write("scene.json", json.dumps(scene).encode())
+        self.assertEqual(self.expect_film_of_pictures(4, "scene.json"), by_look)
+
+    def test_an_initial_condition_does_not_choose_the_look(self):
+        values = []
+        for step in range(5):
+            width = 0.05 + 0.8 * step
+            values += [1 / (1 + math.exp((distance - 2.5) / width)) / (1 + step)
+                       if step else float(distance < 2.5) for distance in self.blob(0)]
+        self.write("spreads.npy", npy(values, (8, 8, 8, 5)))
+        self.expect_film_of_pictures(5, "spreads.npy", "--array-axes", "tzyx", "--iso", "0.1")
+        notes = self.note("render", "spreads.npy", "--array-axes", "tzyx", "--time", "4", "--size",
+                          "16", "-o", "o.png")
+        self.assertNotIn("look mask", notes)
+        self.assertGreater(max(max(row) for row in self.picture("o.png")[3]), 0)
+
+    def test_slices_have_the_range_of_all_steps(self):
+        values = [(step + 1) * distance for step in range(4) for distance in self.blob(step)]
+        self.write("grows.npy", npy(values, (8, 8, 8, 4)))
+        arguments = ("grows.npy", "--array-axes", "tzyx", "--slice", "z=3.5")
+        for more in ((), ("--colormap", "viridis"), ("--range", "0:9")):
+            self.expect_film_of_pictures(4, *arguments, *more)
+        largest = [max(max(row[0::4]) for row in self.picture_of(step, arguments)[3])
+                   for step in range(4)]
+        self.assertEqual(largest, sorted(largest))
+        self.assertLess(largest[0], 150)
+
+    def picture_of(self, step, arguments):
+        self.run_in_film("render", *arguments, "--time", str(step), "-o", "o.png")
+        return self.picture("o.png")
+
+    def test_meshes_have_one_function(self):
+        for step in range(3):
+            points = " ".join(f"{x} {y} {z}" for z in (0, 1) for y in (0, 1) for x in (0, 1))
+            values = " ".join(str((step + 1) ** 2 * k) for k in range(8))
+            self.write(f"m{step}.vtu", (
+                '<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="8" '
+                'NumberOfCells="1"><PointData Scalars="a"><DataArray type="Float32" Name="a" '
+                f'format="ascii">{values}</DataArray></PointData><Points><DataArray '
+                f'type="Float32" NumberOfComponents="3" format="ascii">{points}</DataArray>'
+                '</Points><Cells><DataArray type="Int32" Name="connectivity" format="ascii">'
+                '0 1 3 2 4 5 7 6</DataArray><DataArray type="Int32" Name="offsets" '
+                'format="ascii">8</DataArray><DataArray type="UInt8" Name="types" '
+                'format="ascii">12</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>'
+            ).encode())
+        self.write("m.pvd", b'<VTKFile type="Collection"><Collection>' + b"".join(
+            b'<DataSet timestep="%d" file="m%d.vtu"/>' % (i, i) for i in range(3))
+            + b"</Collection></VTKFile>")
+        for more in ((), ("--look", "haze"), ("--preset", "x-ray"), ("--slice", "z=0.5")):
+            self.expect_film_of_pictures(3, "m.pvd", *more)
+
+    def test_a_step_that_cannot_be_read_hinders_no_other(self):
+        values = [value for step in range(3) for value in self.blob(step)]
+        values[512 + 7] = math.inf
+        self.write("inf.npy", npy(values, (8, 8, 8, 3)))
+        for step in (0, 2):
+            self.succeed("render", "inf.npy", "--array-axes", "tzyx", "--time", str(step), "--size",
+                         "8", "-o", "o.png")
+        self.fail_with("infinit", "render", "inf.npy", "--array-axes", "tzyx", "--time", "1",
+                       "--size", "8", "-o", "p.png")
+
+    def test_time_of_all_that_is_shown(self):
+        for step in range(3):
+            values = [float(distance < 1 + step) for distance in self.blob(0)]
+            self.write(f"l{step}.npy", npy(values, (8, 8, 8)))
+        self.write("l.npy.series", json.dumps({"file-series-version": "1.0", "files": [
+            {"name": f"l{step}.npy", "time": step} for step in range(3)]}).encode())
+        size = ("--size", "8", "-o", "o.png")
+        self.write("s.json", json.dumps({"layers": [
+            {"field": {"file": "l.npy.series"}, "transfer_function": {"preset": "x-ray"}},
+            {"labels": {"file": "l.npy.series"}}]}).encode())
+        for arguments in (("--labels", "l.npy.series"), ("s.json",),
+                          ("l.npy.series", "--layer", "l.npy.series"),
+                          ("--channel", "a=l.npy.series", "--gaussian", "a=2~1;extinction 1")):
+            notes = self.note("render", *arguments, "--time", "1.2", *size)
+            self.assertIn("step 2 of 3 is read", notes, arguments)
+            self.assertNotIn("step 1", notes)
+        self.fail_with("has no steps in time", "render", "builtin:shells:8", "--time", "1",
+                       "--size", "8", "-o", "p.png", code=2)
+        self.fail_with("--array applies", "render", "s.json", "--array", "a", "--size", "8", "-o",
+                       "p.png", code=2)
 
     def test_time_of_a_scene(self):
         self.write("run.vti", steps([0, 3], [[1], [8]]))

@@ -101,16 +101,15 @@ class Steps(unittest.TestCase):
             self.assertEqual(self.points(page), given["points"])
 
     def test_a_step_that_cannot_be_read_is_told(self):
+        header = b"{'descr': '|u1', 'fortran_order': False, 'shape': (8, 8, 8)}"
+        head = b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header
         for i in range(3):
-            self.write(f"s{i}.raw", bytes(SIDE ** 3))
-            header = ("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw\n"
-                      f"data file: s{i}.raw\n")
-            self.write(f"s{i}.nrrd", header.encode())
-        os.unlink(os.path.join(self.folder, "s2.raw"))
-        with Viewer("s%d.nrrd", folder=self.folder) as viewer, viewer.open_socket() as page:
+            values = bytes(k * (i + 1) % 250 for k in range(SIDE ** 3))
+            self.write(f"s{i}.npy", head + (values if i < 2 else values[:-9]))
+        with Viewer("s%d.npy", folder=self.folder) as viewer, viewer.open_socket() as page:
             message = page.receive_type("error")
-            self.assertIn("the function is that of one step, not of all", message["message"])
-            self.assertIn("s2.raw", message["message"])
+            self.assertIn("the step at time 2 does not count", message["message"])
+            self.assertIn("s2.npy", message["message"])
             page.exact_frame()
 
 

@@ -114,7 +114,8 @@ void FilmRun::load() {
     const double first = first_time(animation_, *times);
     times->set(asked, first);
     times->set(request.description, first);
-    for (const std::size_t i : choose_for_all_steps(asked, *times, parallel_)) {
+    const StepsAsked tell{{}, [this](const std::string& note) { notes_.push_back(note); }};
+    for (const std::size_t i : choose_for_all_steps(asked, *times, parallel_, tell)) {
       copy_choice(asked.layers[i], request.description.layers[i]);
     }
   });
@@ -124,7 +125,7 @@ void FilmRun::load() {
   } else {
     place_camera(scene, prepared_);
   }
-  notes_ = prepared_.import_notes;
+  notes_.insert(notes_.end(), prepared_.import_notes.begin(), prepared_.import_notes.end());
   if (prepared_.look && !prepared_.look->name.empty()) notes_.push_back(look_line(prepared_));
   if (times->left_out() > 0) {
     notes_.push_back(

@@ -517,7 +517,9 @@ void choose_from_steps(SceneRequest& request, const ParallelFor& parallel) {
     // A part of the data is chosen in the request alone.
     tried.layers[i].field.options.part = request.description.layers[i].field.options.part;
   }
-  for (const std::size_t i : choose_for_all_steps(tried, *request.times, parallel)) {
+  const StepsAsked tell{
+      {}, [&](const std::string& note) { request.prepared.import_notes.push_back(note); }};
+  for (const std::size_t i : choose_for_all_steps(tried, *request.times, parallel, tell)) {
     copy_choice(tried.layers[i], asked.layers[i]);
     copy_choice(tried.layers[i], request.description.layers[i]);
   }

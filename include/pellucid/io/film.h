@@ -116,17 +116,24 @@ class FrameLoader {
 /// whose sources have options of their own.
 void copy_choice(const LayerDescription& from, LayerDescription& to);
 
+/// What choose_for_all_steps() asks and tells meanwhile; each may be empty.
+struct StepsAsked {
+  std::function<bool()> ended{};                   ///< before each step is read: whether to end
+  std::function<void(const std::string&)> note{};  ///< of a step that does not count, and why
+};
+
 /// Chooses what the scene leaves to its data, such as the function, the surfaces and the range of a
 /// layer whose data have steps, from all of these, or of many from `most_steps` evenly among them,
 /// and writes it into the description. Each of these is read for that. Of volumes every second
-/// value along each axis is looked at; functions of meshes are laid over the range of their values
-/// at all steps. Channels of several variables and labels stay as they are. Returns the layers that
-/// were changed; none where `ended`, which is asked before each step is read if there is one,
-/// returns true. Throws Error.
+/// value along each axis is looked at; the look is that which most steps would have. Functions of
+/// meshes are those of the first step, laid over the range of the values at all. Of labels all
+/// steps are read, so that each label has a color. A step that cannot be read does not count.
+/// Channels of several variables stay as they are. Returns the layers that were changed; none where
+/// it was ended. Throws Error.
 std::vector<std::size_t> choose_for_all_steps(SceneDescription& description,
                                               const SceneTimes& times,
                                               const ParallelFor& parallel = {},
-                                              const std::function<bool()>& ended = {});
+                                              const StepsAsked& asked = {});
 inline constexpr std::size_t most_steps = 12;
 
 }  // namespace pellucid

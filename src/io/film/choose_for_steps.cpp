@@ -22,6 +22,7 @@
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/presets.h"
 #include "scene/layer_functions.h"
+#include "text/json_document.h"
 
 namespace pellucid {
 namespace {
@@ -196,8 +197,8 @@ class PooledLabels {
 /// What is read of the steps of one source.
 class StepReader {
  public:
-  StepReader(FieldSource source, const std::function<bool()>& ended)
-      : source_(std::move(source)), ended_(ended) {}
+  StepReader(FieldSource source, const StepsAsked& asked)
+      : source_(std::move(source)), asked_(asked) {}
 
   /// Calls visit(volume) with each of these steps that can be read: those that cannot matter once
   /// they are shown. Returns false where it was ended. Throws Error where none can be read.
@@ -205,13 +206,17 @@ class StepReader {
   bool visit(const std::vector<double>& steps, const Visit& visit) {
     std::size_t failed = 0;
     for (const double step : steps) {
-      if (ended_ && ended_()) return false;
+      if (asked_.ended && asked_.ended()) return false;
       source_.options.time = step;
       std::optional<Volume> volume;
       try {
         volume.emplace(load_field(source_));
-      } catch (const Error&) {
+      } catch (const Error& error) {
         if (++failed == steps.size()) throw;
+        if (asked_.note) {
+          asked_.note("the step at time " + scene_json::number_text(step) +
+                      " does not count for what is chosen for all: " + error.what());
+        }
         continue;
       }
       visit(*std::move(volume));
@@ -221,7 +226,7 @@ class StepReader {
 
  private:
   FieldSource source_;
-  const std::function<bool()>& ended_;
+  const StepsAsked& asked_;
 };
 
 /// Returns whether a look is for values that may be labels.
@@ -253,9 +258,9 @@ void make_labels(LayerDescription& layer) {
 
 /// Chooses the labels of a layer from all of these steps. Returns false where it was ended.
 bool choose_labels(LayerDescription& layer, const std::vector<double>& steps,
-                   const std::function<bool()>& ended) {
+                   const StepsAsked& asked) {
   PooledLabels labels;
-  StepReader reader(layer.labels ? layer.labels->field : layer.field, ended);
+  StepReader reader(layer.labels ? layer.labels->field : layer.field, asked);
   const auto add = [&](Volume volume) {
     try {
       labels.add(std::move(volume));
@@ -273,9 +278,9 @@ bool choose_labels(LayerDescription& layer, const std::vector<double>& steps,
 enum class Chosen { nothing, something, ended };
 
 Chosen choose_of_volume(LayerDescription& layer, const std::vector<double>& all,
-                        const std::function<bool()>& ended) {
+                        const StepsAsked& asked) {
   const auto as_labels = [&] {
-    return choose_labels(layer, all, ended) ? Chosen::something : Chosen::ended;
+    return choose_labels(layer, all, asked) ? Chosen::something : Chosen::ended;
   };
   if (layer.labels) return as_labels();
   const std::vector<double> steps = chosen(all);
@@ -283,7 +288,7 @@ Chosen choose_of_volume(LayerDescription& layer, const std::vector<double>& all,
   std::vector<Look> looks;
   PooledVolume pooled(steps.size());
   std::optional<PooledLabels> labels(std::in_place);
-  const bool is_whole = StepReader(layer.field, ended).visit(steps, [&](Volume volume) {
+  const bool is_whole = StepReader(layer.field, asked).visit(steps, [&](Volume volume) {
     if (has_look && (looks.empty() || layer.look->name.empty())) {
       looks.push_back(look_of(volume, layer));
       if (!is_of_labels(looks.back())) labels.reset();
@@ -322,7 +327,7 @@ Chosen choose_of_volume(LayerDescription& layer, const std::vector<double>& all,
 /// Chooses the function of a mesh on its first step, over the range of the values of all: a mesh of
 /// all of them there is none.
 Chosen choose_of_mesh(LayerDescription& layer, const std::vector<double>& steps,
-                      const ParallelFor& parallel, const std::function<bool()>& ended) {
+                      const ParallelFor& parallel, const StepsAsked& asked) {
   MeshSource source = *layer.mesh;
   std::shared_ptr<const MeshChannels> mesh;
   const auto load = [&](double step) {
@@ -333,7 +338,7 @@ Chosen choose_of_mesh(LayerDescription& layer, const std::vector<double>& steps,
     constexpr double infinity = std::numeric_limits<double>::infinity();
     std::array<double, 2> range{infinity, -infinity};
     for (const double step : steps) {
-      if (ended && ended()) return Chosen::ended;
+      if (asked.ended && asked.ended()) return Chosen::ended;
       load(step);
       const VolumeStatistics& values = mesh->statistics(0);
       if (values.finite == 0) continue;
@@ -354,14 +359,14 @@ Chosen choose_of_mesh(LayerDescription& layer, const std::vector<double>& steps,
 
 std::vector<std::size_t> choose_for_all_steps(SceneDescription& description,
                                               const SceneTimes& times, const ParallelFor& parallel,
-                                              const std::function<bool()>& ended) {
+                                              const StepsAsked& asked) {
   std::vector<std::size_t> changed_layers;
   for (std::size_t i = 0; i < description.layers.size(); ++i) {
     LayerDescription& layer = description.layers[i];
     const std::vector<double>& steps = times.of(i);
     if (steps.size() < 2 || !leaves_open(layer)) continue;
-    const Chosen found = layer.mesh ? choose_of_mesh(layer, chosen(steps), parallel, ended)
-                                    : choose_of_volume(layer, steps, ended);
+    const Chosen found = layer.mesh ? choose_of_mesh(layer, chosen(steps), parallel, asked)
+                                    : choose_of_volume(layer, steps, asked);
     if (found == Chosen::ended) return {};
     if (found == Chosen::something) changed_layers.push_back(i);
   }
