@@ -58,7 +58,7 @@ void print_notes(const RenderArguments& arguments, const PreparedScene& prepared
   if (prepared.look && !prepared.look->name.empty()) {
     print_note(look_line(prepared));
   } else if (prepared.transfer_function_from == "default" && !arguments.print_tf &&
-             arguments.save_tf.empty()) {
+             arguments.save_tf.empty() && !prepared.description.layers.front().labels) {
     print_note(fmt::format(
         "no transfer function given: using {} (--save-tf FILE.json writes it for editing, --tf "
         "FILE.json reads it)",
