@@ -140,6 +140,26 @@ class Layers(ProgramTest):
             self.assertAlmostEqual(looks[2]["extinction"], 1, delta=0.01)
             self.assertEqual(looks[0]["extinction"], 0)
 
+    def test_labels_alone_have_no_function(self):
+        alone = ("--labels", "labels.npy")
+        for options in (("--tf", "none.json"), ("--preset", "ct-bone"), ("--gaussian", "v=1~1"),
+                        ("--projection", "maximum"), ("--colormap", "jet"), ("--iso", "1"),
+                        ("--look", "ct")):
+            self.refuse(options[0] + ".*: is for INPUT", *alone, *options,
+                        code=2)
+        self.refuse("--spacing applies to volume files, not to files of --layer and --labels",
+                    *alone, "--spacing", "1,1,2", code=2)
+        self.refuse("--unit-distance does not apply to files of --layer and --labels", *alone,
+                    "--unit-distance", "2", code=2)
+        self.write("scene.json", json.dumps({"layers": [{"labels": {"file": "labels.npy"}}]}))
+        for options in (("--tf", "none.json"), ("--preset", "ct-bone"), ("--gaussian", "v=1~1")):
+            self.refuse(f"{options[0]}: labels have colors of their own", "scene.json", *options,
+                        code=2)
+        for options in (alone, (*alone, "--look", "labels"), ("scene.json",)):
+            result = self.run_program("render", *options, "--size", "4", "-o", "a.exr")
+            self.assertEqual(result.returncode, 0)
+            self.assertNotIn(b"no transfer function", result.stderr)
+
     def test_tables_that_are_none(self):
         def scene(text):
             self.write("t.txt", text)

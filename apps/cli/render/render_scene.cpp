@@ -138,17 +138,6 @@ void check_arguments(const RenderArguments& arguments) {
     throw UsageError(
         fmt::format("--values {}: expected a name that ends in .npy or .exr", arguments.values));
   }
-  if (!arguments.projection.empty() && arguments.has_only_added_layers()) {
-    throw UsageError("--projection: is for INPUT; give one, or write it into a layer of a scene");
-  }
-  if (const std::string option = arguments.colors.option_of_a_layer();
-      !option.empty() && arguments.has_only_added_layers()) {
-    throw UsageError(option + ": is for INPUT; give one, or edit the layer in a scene");
-  }
-  if (const std::string option = arguments.light.option_of_a_layer();
-      !option.empty() && arguments.has_only_added_layers()) {
-    throw UsageError(option + ": is for INPUT; give one, or write it into a layer of a scene");
-  }
   const std::vector<NamedFile> outputs = output_files(arguments);
   const NamedFile inputs[] = {{"INPUT", arguments.input},
                               {"--solution", arguments.mesh.q},
@@ -289,6 +278,46 @@ void refuse_options_of_one_layer(const RenderArguments& arguments,
   }
 }
 
+/// Returns the first option that says how INPUT is shown; empty: none is given.
+std::string option_of_input(const RenderArguments& arguments) {
+  if (!arguments.transfer_function.empty()) return "--tf";
+  if (!arguments.preset.empty()) return "--preset";
+  if (!arguments.gaussians.empty()) return "--gaussian";
+  if (!arguments.projection.empty()) return "--projection";
+  const std::string option = arguments.colors.option_of_a_layer();
+  return option.empty() ? arguments.light.option_of_a_layer() : option;
+}
+
+/// Throws UsageError where an argument is about INPUT, but there are added layers alone.
+void refuse_options_of_input(const RenderArguments& arguments) {
+  if (const std::string option = option_of_input(arguments); !option.empty()) {
+    throw UsageError(option + ": is for INPUT; give one, or write it into a layer of a scene");
+  }
+  if (const std::string look = lower_case(arguments.look);
+      !look.empty() && look != "labels" && arguments.layers.empty()) {
+    throw UsageError(
+        fmt::format("--look {}: is for INPUT; labels have a look of their own; drop "
+                    "it, or give INPUT",
+                    arguments.look));
+  }
+  constexpr const char* added = "files of --layer and --labels";
+  arguments.volume.refuse(added);
+  arguments.import.refuse(added);
+}
+
+/// Throws UsageError where an argument gives a function to labels of a scene.
+void refuse_function_of_labels(const RenderArguments& arguments, const LayerDescription& layer) {
+  if (!layer.labels) return;
+  const std::pair<const char*, bool> given[] = {{"--tf", !arguments.transfer_function.empty()},
+                                                {"--preset", !arguments.preset.empty()},
+                                                {"--gaussian", !arguments.gaussians.empty()}};
+  for (const auto& [argument, is_given] : given) {
+    if (!is_given) continue;
+    throw UsageError(
+        fmt::format("{}: labels have colors of their own; give a table of them", argument));
+  }
+}
+
 /// Adds the layers of --layer and --labels, and the clips of --clip.
 void add_layers(const RenderArguments& arguments, SceneDescription& description) {
   const VolumeOptions no_options;
@@ -363,9 +392,11 @@ SceneDescription describe(const RenderArguments& arguments,
     arguments.mesh.refuse_but_times("channels of volumes");
   }
   if (arguments.has_only_added_layers()) {
+    refuse_options_of_input(arguments);
     description.layers.clear();
   } else {
     refuse_options_of_one_layer(arguments, description);
+    refuse_function_of_labels(arguments, layer);
   }
   if (!arguments.gaussians.empty()) layer.transfer_function = gaussians(arguments);
   add_channels(arguments, layer);
