@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "arguments/overwriting.h"
 #include "arguments/parse.h"
@@ -68,10 +71,19 @@ void check(const AnimateArguments& arguments) {
   refuse_overwriting(outputs, inputs);
 }
 
-std::string over_text(const std::string& frames) {
+/// Tells of frames with pixels over the tolerance, by their numbers.
+std::string over_text(std::vector<int> frames) {
+  std::ranges::sort(frames);
+  if (frames.size() == 1) {
+    return fmt::format(
+        "some pixels of frame {} may be over the tolerance; its metadata say how many",
+        frames.front());
+  }
+  const int last = frames.back();
+  frames.pop_back();
   return fmt::format(
-      "some pixels of frames may be over the tolerance; the pictures' metadata say how many: {}",
-      frames);
+      "some pixels of frames {} and {} may be over the tolerance; their metadata say how many",
+      fmt::join(frames, ", "), last);
 }
 
 /// Makes the file of a film whose frames are there. A signal ends it, and leaves no part of it.
@@ -103,10 +115,11 @@ int run_on_ranks(AnimateArguments arguments) {
     if (is_first) throw Error(text);
     return 1;
   }
-  const auto over = run->over().empty() ? "" : fmt::format("{}", fmt::join(run->over(), ", "));
-  std::string all_over;
-  for (const std::string& text : ranks->gather_all(over)) {
-    if (!text.empty()) all_over += (all_over.empty() ? "" : ", ") + text;
+  std::vector<int> all_over;
+  for (const std::string& text :
+       ranks->gather_all(fmt::format("{}", fmt::join(run->over(), " ")))) {
+    std::istringstream numbers(text);
+    for (int frame = 0; numbers >> frame;) all_over.push_back(frame);
   }
   if (is_first) {
     finish(*run, arguments);
@@ -129,9 +142,7 @@ int run_animate(AnimateArguments arguments) {
   run();
   if (arguments.part.empty()) finish(run, arguments);
   run.tell(arguments.output);
-  if (!run.over().empty()) {
-    throw OverTolerance(over_text(fmt::format("{}", fmt::join(run.over(), ", "))));
-  }
+  if (!run.over().empty()) throw OverTolerance(over_text(run.over()));
   return 0;
 }
 
