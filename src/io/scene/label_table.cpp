@@ -16,6 +16,7 @@
 #include "pellucid/io/internal/atomic_file.h"
 #include "pellucid/scene/error.h"
 #include "pellucid/scene/srgb.h"
+#include "text/latin_text.h"
 
 namespace pellucid {
 namespace {
@@ -121,6 +122,7 @@ std::vector<LabelStyle> parse_label_table(std::string_view text, const std::stri
           "is no label; lines are 'NUMBER R G B OPACITY VISIBLE MESH \"NAME\"' (ITK-SNAP) or "
           "'NUMBER NAME R G B OPACITY' (3D Slicer)");
     }
+    style.name = as_utf8(style.name);
     style.label = static_cast<std::int32_t>(*label);
     if (!labels.insert(style.label).second) {
       fail("label " + std::to_string(style.label) + " is there twice; remove one of them");

@@ -13,6 +13,7 @@
 #include <map>
 
 #include "pellucid/scene/error.h"
+#include "text/latin_text.h"
 #include "text/printable.h"
 #include "text/text.h"
 
@@ -255,15 +256,6 @@ void tell_unknown(const Lines& lines, PageDescription& said) {
   if (!unknown.empty()) {
     said.notes.push_back("its description has lines that are not read: " + printable(unknown));
   }
-}
-
-bool is_utf8(std::string_view text) {
-  while (!text.empty()) {
-    const std::size_t length = utf8_length(text);
-    if (length == 0) return false;
-    text.remove_prefix(length);
-  }
-  return true;
 }
 
 }  // namespace
