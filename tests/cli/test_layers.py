@@ -160,6 +160,23 @@ class Layers(ProgramTest):
             self.assertEqual(result.returncode, 0)
             self.assertNotIn(b"no transfer function", result.stderr)
 
+    def test_tables_in_other_encodings(self):
+        def name_of(data):
+            self.write("t.txt", data)
+            scene = self.saved("--labels", "labels.npy", "--label-table", "t.txt")
+            return scene["layers"][0]["labels"]["colors"][0]["name"]
+
+        line = '2 255 0 0 1 1 1 "fu\xdf"\n'
+        for encoding in ("utf-8", "utf-8-sig", "latin-1"):
+            self.assertEqual(name_of(line.encode(encoding)), "fu\xdf")
+        # Bytes that look like UTF-8 but are half of a pair.
+        self.assertEqual(name_of(b"2 \xed\xa0\x80 1 1 1 1\n"), "\xed\xa0\x80")
+        for encoding in ("utf-16", "utf-16-be"):
+            self.write("t.txt", ("\ufeff" if encoding == "utf-16-be" else "").encode(encoding)
+                       + line.encode(encoding))
+            self.refuse(r"t\.txt: is text in UTF-16; save it as UTF-8", "--labels", "labels.npy",
+                        "--label-table", "t.txt")
+
     def test_tables_that_are_none(self):
         def scene(text):
             self.write("t.txt", text)

@@ -163,6 +163,17 @@ TEST_F(AtomicFileTest, TextIsReadBack) {
   EXPECT_EQ(read_text_file(path("t.txt")), "");
 }
 
+TEST_F(AtomicFileTest, TextIsReadWithoutItsMark) {
+  write_text_file(path("t.txt"), "\xef\xbb\xbf{}");
+  EXPECT_EQ(read_text_file(path("t.txt")), "{}");
+  EXPECT_EQ(read_bytes(path("t.txt"), 5), "\xef\xbb\xbf{}");
+  for (const char* mark : {"\xff\xfe", "\xfe\xff"}) {
+    write_text_file(path("t.txt"), mark);
+    EXPECT_TRUE(contains(error_of([&] { read_text_file(path("t.txt")); }), "is text in UTF-16"));
+    EXPECT_EQ(read_bytes(path("t.txt"), 2), mark);
+  }
+}
+
 TEST_F(AtomicFileTest, TextThatCannotBeReadIsAnError) {
   write("long.txt", "12345");
   EXPECT_EQ(read_text_file(path("long.txt"), 5), "12345");

@@ -100,7 +100,7 @@ fs::path make_file(const Work& work, const fs::path& folder,
 SavedFile read_file(const fs::path& path, const Work& work) {
   check_size(fs::file_size(path), work.most_bytes);
   return {path.filename().string(), content_type_of(work.wanted.format),
-          read_text_file(path, work.most_bytes)};
+          read_bytes(path, work.most_bytes)};
 }
 
 /// Returns a message without the folder, which pages do not know.

@@ -23,7 +23,7 @@ std::string bytes_of(const std::string& name, const Write& write) {
   const TemporaryFolder folder("a file to save");
   const fs::path path = folder.path() / name;
   write(path);
-  return read_text_file(path, std::numeric_limits<std::size_t>::max());
+  return read_bytes(path, std::numeric_limits<std::size_t>::max());
 }
 
 }  // namespace

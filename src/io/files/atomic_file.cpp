@@ -95,6 +95,15 @@ void write_text_file(const fs::path& path, std::string_view text) {
 }
 
 std::string read_text_file(const fs::path& path, std::size_t largest) {
+  std::string text = read_bytes(path, largest);
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
+    throw Error(path.string() + ": is text in UTF-16; save it as UTF-8");
+  }
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
+  return text;
+}
+
+std::string read_bytes(const fs::path& path, std::size_t largest) {
   const std::uintmax_t size = check_input_file(path);
   if (size > largest) {
     throw Error(path.string() + ": " + std::to_string(size) + " bytes; at most " +

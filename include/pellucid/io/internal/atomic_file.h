@@ -27,9 +27,12 @@ class AtomicFile {
 
 /// Writes a text file, complete or not at all. Throws Error.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
-/// Reads a whole text file of at most `largest` bytes. Throws Error if it is missing, a folder or
-/// larger.
+/// Reads a whole text file of at most `largest` bytes, without the mark that some programs put
+/// before UTF-8. Throws Error if it is missing, a folder, larger or UTF-16.
 std::string read_text_file(const std::filesystem::path& path, std::size_t largest = std::size_t(64)
                                                                                     << 20);
+/// Reads a whole file of at most `largest` bytes. Throws Error if it is missing, a folder or
+/// larger.
+std::string read_bytes(const std::filesystem::path& path, std::size_t largest);
 
 }  // namespace pellucid
