@@ -297,6 +297,25 @@ class Composer {
     cairo_restore(pen_.get());
   }
 
+  /// Draws a column of so many pixels, each over the whole width of a box.
+  void paint_rows(cairo_surface_t* column, const PageBox& box, int height) {
+    if (cairo_surface_get_type(cairo_get_target(pen_.get())) != CAIRO_SURFACE_TYPE_IMAGE) {
+      paint(column, box, 1, height);
+      return;
+    }
+    // Pixman's matrices have 16 binary digits after the point: a pixel that is stretched far ends
+    // elsewhere, but padded it goes on to the ends of the box.
+    cairo_save(pen_.get());
+    cairo_rectangle(pen_.get(), box.x, box.y, box.width, box.height);
+    cairo_translate(pen_.get(), box.x, box.y);
+    cairo_scale(pen_.get(), box.height / height, box.height / height);
+    cairo_set_source_surface(pen_.get(), column, 0, 0);
+    cairo_pattern_set_filter(cairo_get_source(pen_.get()), CAIRO_FILTER_NEAREST);
+    cairo_pattern_set_extend(cairo_get_source(pen_.get()), CAIRO_EXTEND_PAD);
+    cairo_fill(pen_.get());
+    cairo_restore(pen_.get());
+  }
+
  private:
   // Parts over the picture.
 
@@ -599,8 +618,8 @@ void compose(const FigurePage& page, const Layout& layout, Pen& pen) {
       pen.fill({stage.x, stage.y, stage.width, half - stage.y}, edge(0));
       pen.fill({stage.x, half, stage.width, stage.bottom() - half},
                edge(static_cast<std::size_t>(page.picture_height) - 1));
-      composer.paint(behind.get(), {stage.x, picture.y, stage.width, picture.height}, 1,
-                     page.picture_height);
+      composer.paint_rows(behind.get(), {stage.x, picture.y, stage.width, picture.height},
+                          page.picture_height);
     }
     const CairoSurface pixels = surface_of(page.picture, page.picture_width, page.picture_height);
     composer.paint(pixels.get(), picture, page.picture_width, page.picture_height);
