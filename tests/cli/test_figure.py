@@ -36,6 +36,11 @@ def color_at(function, value):
     raise ValueError(value)
 
 
+# Data whose axes stand around the picture, with a legend.
+TWO_CHANNELS = ("--channel", "a=builtin:marschner_lobb:8", "--channel", "b=builtin:shells:8",
+                "--gaussian", "a=0.5~0.1,b=0.5~0.3;extinction 5;color #ff0000")
+
+
 class Svg:
     """Boxes of pictures, lines and glyphs of an .svg, in points."""
 
@@ -359,6 +364,19 @@ LOOKUP_TABLE default
                        "--size", "40000x40000", "--figure", "a.pdf")
         self.fail_with(r"figure: a .png of the picture's pixels would be", "render", "ramp.npy",
                        "--size", "32000x30000", "--figure", "a.png")
+
+    def test_background_goes_on_no_farther_than_the_figure(self):
+        self.succeed("render", *TWO_CHANNELS, "--size", "60", "--figure", "a.png")
+        width, _, channels, rows = png(self.read("a.png"))
+        left = round(3 * width / (85 / 25.4 * 72))
+        self.assertTrue(all(set(row[:channels * left]) == {255} for row in rows))
+        inside = [row[channels * left] < 255 for row in rows]
+        self.assertGreater(inside.index(False, inside.index(True)), width / 2)
+
+    def test_axes_without_room_stand_over_the_picture(self):
+        narrow = ["--size", "32", "--figure-width", "30", "--color-bar-title", "w" * 300]
+        self.succeed("render", *TWO_CHANNELS, *narrow, "--figure", "a.svg", "--figure", "a.png")
+        self.assertGreater(png(self.read("a.png"))[0], 300)
 
     def test_no_bars(self):
         self.options = ["--size", "30", "--tf", "tf.json", "--opacity", "0"]

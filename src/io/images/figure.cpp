@@ -158,9 +158,10 @@ FigurePage::Format page_format(FigureFormat format) {
                                        : FigurePage::Format::png;
 }
 
-/// Returns the page without its pixels. `covered`: of them, if they are known.
+/// Returns the page without its pixels. `covered`: of them, if they are known. `may_grow`: whether
+/// axes may stand around the picture.
 FigurePage page_of(const Figure& figure, ImageSize size, FigureFormat format,
-                   std::vector<std::uint8_t> covered) {
+                   std::vector<std::uint8_t> covered, bool may_grow = true) {
   if (!(figure.width >= smallest_figure_width && figure.width <= largest_figure_width)) {
     throw Error("figure: is " + short_number(figure.width) + " mm wide, but must be from " +
                 short_number(smallest_figure_width) + " to " + short_number(largest_figure_width));
@@ -182,7 +183,7 @@ FigurePage page_of(const Figure& figure, ImageSize size, FigureFormat format,
       if (most - least < 0.02) opacity.clear();
     }
   }
-  page.grows = !covered.empty() && has_free_edge(covered, size.width, size.height);
+  page.grows = may_grow && !covered.empty() && has_free_edge(covered, size.width, size.height);
   page.covered = std::move(covered);
   if (draws_axes(figure)) set_axes(figure, size, page);
   const bool is_parallel =
@@ -214,6 +215,16 @@ DrawnFigure drawn(const FigurePage& page) {
   (*draw_figure())(page, result, error);
   if (!error.empty()) throw Error("figure: " + error);
   return result;
+}
+
+/// Returns whether a page without its pixels could be drawn.
+bool has_room(const FigurePage& page) {
+  try {
+    static_cast<void>(drawn(page));
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -281,6 +292,11 @@ std::string encode_figure(const Image& image, const Figure& figure, FigureFormat
   for (const auto& pixel : image.pixels) covered.push_back(pixel[3] > 1.0F / 512 ? 1 : 0);
   FigurePage page = page_of(figure, {image.width, image.height}, format, std::move(covered));
   const Background behind = figure.background.value_or(Rgb<double>{1, 1, 1});
+  // check_figure(), which knows no pixels, has seen room for a page whose axes stand over the
+  // picture.
+  if (page.grows && !has_room(page)) {
+    page = page_of(figure, {image.width, image.height}, format, std::move(page.covered), false);
+  }
   page.picture = display_bytes(image, behind);
   Image empty;
   empty.width = 1;
