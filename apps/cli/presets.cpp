@@ -58,7 +58,7 @@ Command add_presets(CommandLine& app) {
   command.footer(
       "Examples:\n"
       "  pellucid render head.nrrd --preset ct-bone -o bone.png\n"
-      "  pellucid render flow.npy --preset simulation-diverging --range 0,40 -o flow.png");
+      "  pellucid render flow.npy --preset simulation-diverging --range 0:40 -o flow.png");
   return {&command,
           [json, colormaps] { return *colormaps ? list_color_maps(*json) : list_presets(*json); }};
 }
