@@ -2,6 +2,7 @@
 """Small types that the compiled part of the package fills in, and how notes are told."""
 from __future__ import annotations
 
+import re
 import sys
 import warnings
 from typing import TYPE_CHECKING, NamedTuple
@@ -15,8 +16,21 @@ class Note(UserWarning):
     """What a reader or a converter assumed, rounded or left out."""
 
 
+# Options of the program that notes name, and their words here.
+_KEYWORDS = {"array-axes": "axes", **{name: name for name in (
+    "axes", "centering", "level", "origin", "series", "spacing", "time")}}
+_OPTION = re.compile(rf"(?<=[ (])--({'|'.join(_KEYWORDS)})(?: (point|cell)\b)?(?![\w.=-])")
+
+
+def in_keywords(text: str) -> str:
+    """A note with keywords in place of options: "time= chooses one"."""
+    return _OPTION.sub(lambda option: f"{_KEYWORDS[option[1]]}="
+                       + (f'"{option[2]}"' if option[2] else ""), text)
+
+
 def tell(text: str) -> None:
     """Warns of `text`, as of the line that called the package."""
+    text = in_keywords(text)
     level, frame = 1, sys._getframe()
     while frame is not None and _is_of_package(frame.f_globals.get("__name__", "")):
         level, frame = level + 1, frame.f_back

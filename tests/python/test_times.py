@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import pellucid
+from pellucid._notes import in_keywords, tell
 
 SHAPE = (3, 4, 5)
 
@@ -97,3 +98,12 @@ def test_nibabel_writes_them(tmp_path):
     assert pellucid.times(tmp_path / "a.nii.gz") == [10, 12.5, 15]
     read = pellucid.read_volume(tmp_path / "a.nii.gz", time=12)
     assert np.array_equal(read.array, values[..., 1].T)
+
+
+def test_notes_name_keywords():
+    with pytest.warns(pellucid.Note, match=r"^a\.pvd: 5 times; time= chooses one$"):
+        tell("a.pvd: 5 times; --time chooses one")
+    assert in_keywords("read with (--centering point), (--level) or --array-axes zyx") == \
+        'read with (centering="point"), (level=) or axes= zyx'
+    assert in_keywords("a --time.npy --time-steps --precision") == \
+        "a --time.npy --time-steps --precision"
