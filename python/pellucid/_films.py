@@ -2,9 +2,11 @@
 """Films: scenes that change, one picture after the other."""
 from __future__ import annotations
 
+import copy
 import json
+import operator
 import os
-from typing import Any, Callable, Iterable, Iterator, Optional, Union
+from typing import Any, Callable, Iterable, Iterator, Optional, SupportsIndex, Union, overload
 
 from . import _pellucid
 from ._pellucid import Error, Image, Renderer
@@ -32,12 +34,27 @@ class _Frames:
             raise Error(f"frames: expected a Scene, got {type(scene).__name__}; scene_of() makes "
                         "one of data")
         self._scenes = _pellucid._FilmScenes(scene, _animation_text(scene, animation))
+        self._numbers = range(len(self._scenes))
 
     def __len__(self) -> int:
-        return len(self._scenes)
+        return len(self._numbers)
 
-    def __getitem__(self, index: int) -> Scene:
-        return self._scenes.frame(index + len(self) if index < 0 else index)[0]
+    @overload
+    def __getitem__(self, index: SupportsIndex) -> Scene: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> _Frames: ...
+
+    def __getitem__(self, index: Union[SupportsIndex, slice]) -> Union[Scene, _Frames]:
+        if isinstance(index, slice):
+            part = copy.copy(self)
+            part._numbers = self._numbers[index]
+            return part
+        try:
+            number = self._numbers[index]
+        except IndexError:
+            raise IndexError(f"frame {operator.index(index)} of {len(self)}") from None
+        return self._scenes.frame(number)[0]
 
     def __iter__(self) -> Iterator[Scene]:
         return (scene for scene, _ in self.stamped())
@@ -48,11 +65,12 @@ class _Frames:
 
     def stamped(self) -> Iterator[tuple[Scene, str]]:
         """Each scene with what it is made from, empty for arrays."""
-        return (self._scenes.frame(index) for index in range(len(self)))
+        return (self._scenes.frame(number) for number in self._numbers)
 
 
 def frames(scene: Scene, animation: Optional[dict] = None) -> _Frames:
     """Returns the scenes of an animated scene as a sequence: to be rendered, or changed before.
+    A slice of it is a part of the film.
 
     scene      a Scene; load_scene() reads one
     animation  what changes, as the key "animation" of a scene file says (docs/reference/scene.md);

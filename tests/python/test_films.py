@@ -228,3 +228,14 @@ def test_what_is_no_film(tmp_path):
     with pytest.raises(IndexError):
         pellucid.frames(scene)[120]
     assert json.loads("[]") == list(tmp_path.iterdir())
+
+
+def test_parts_of_films():
+    made = pellucid.frames(scene_of(array()), {"seconds": 2, "fps": 4, "turntable": {"turns": 1}})
+    part = made[1:-1:2]
+    assert (len(made), len(part), len(part[1:]), len(made[9:])) == (8, 3, 2, 0)
+    for each, number in zip(part, (1, 3, 5)):
+        assert each.camera.position == made[number].camera.position
+    assert part[-1].camera.position == made[5].camera.position
+    with pytest.raises(IndexError, match="frame -4 of 3"):
+        part[-4]
