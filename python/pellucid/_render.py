@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import os
 import warnings
-from typing import Any, Callable, Optional, Union
+from typing import Any, Callable, Iterable, Optional, Union
 
 from . import _pellucid
 from ._colormaps import color_points
@@ -17,6 +17,18 @@ _PLACE_NAMES = ("spacing", "origin", "direction", "coordinates", "centering")
 _CHANGES = {"cmap", "clim", "opacity"}
 _LAYER_NAMES = (({f.name for f in dataclasses.fields(Layer)} | _CHANGES)
                 - {"data", "transfer_function"})
+
+
+# Keywords of scene_of() and, with others, of those that call it.
+_SCENE_NAMES = (_LAYER_NAMES | set(_PLACE_NAMES)
+                | {"preset", "tolerance", "size", "camera", "view", "background", "look"})
+
+
+def check_keywords(function: str, given: Iterable[str]) -> None:
+    """Raises TypeError, as Python does, for a keyword that scene_of() does not know."""
+    for name in given:
+        if name not in _SCENE_NAMES:
+            raise TypeError(f"{function}() got an unexpected keyword argument '{name}'")
 
 
 def look(data: Any, name: Optional[str] = None) -> Layer:
@@ -90,6 +102,7 @@ def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] 
              view: Optional[str] = None, background: Any = None,
              look: Optional[str] = None, **layer: Any) -> Scene:
     """Returns the scene that render() renders; it takes the same arguments."""
+    check_keywords("scene_of", layer)
     if isinstance(data, (str, os.PathLike)):
         path, data = os.fspath(data), _pellucid.read(data)
         if isinstance(data, Layer) and (look or preset or transfer_function is not None):
@@ -106,9 +119,6 @@ def scene_of(data: Any, transfer_function: Any = None, *, preset: Optional[str] 
         if transfer_function is not None:
             raise Error(f"preset {preset}: a transfer function is given too; drop one of the two")
         transfer_function = preset
-    for name in layer:
-        if name not in _LAYER_NAMES:
-            raise TypeError(f"render() got an unexpected keyword argument '{name}'")
     if isinstance(data, (Scene, Layer)) and (layer or look or transfer_function is not None):
         raise Error("render: the scene has its layers; set transfer functions, presets and "
                     f"{', '.join(layer) or 'looks'} there")
@@ -175,6 +185,7 @@ def render(data: Any, transfer_function: Any = None, *, preset: Optional[str] = 
 
     Raises Error: one line that says what is wrong, where, and what to do.
     """
+    check_keywords("render", layer)
     share = _share_of(tolerance)
     scene = scene_of(data, transfer_function, preset=preset,
                      tolerance=None if share is not None else tolerance, size=size, camera=camera,

@@ -6,6 +6,8 @@ import atexit
 import copy
 import html
 import json
+import math
+import numbers
 import os
 import pathlib
 import secrets
@@ -17,7 +19,7 @@ from ._notebook import frame_name
 from ._notes import tell
 from ._pellucid import (Error, ViewerServer, page_of_scene, page_without_scene,
                         reduced_page_of_scene)
-from ._render import scene_of
+from ._render import check_keywords, scene_of
 from .scene import Scene
 
 # Notebooks are served to a browser of this machine from any port.
@@ -204,6 +206,7 @@ def view(data: Any, transfer_function: Any = None, *, open: Optional[bool] = Non
     cannot write them. The page is at the loopback interface: where the notebook runs on another
     machine, forward the port and open the address. Raises Error as render() does.
     """
+    check_keywords("view", how)
     if isinstance(how.get("tolerance"), str):
         raise Error(f"tolerance: expected a number, got {how['tolerance']!r:.60}; shares are for "
                     "render(), and the page has a slider")
@@ -229,10 +232,12 @@ def export(data: Any, path: Union[str, "os.PathLike[str]"], transfer_function: A
     does, where the page is too large, and for what a page cannot hold: fields of one's own, a
     backdrop.
     """
+    check_keywords("export", how)
     target = pathlib.Path(path)
     if target.suffix.lower() != ".html":
         raise Error(f"{target}: expected a name that ends in .html")
-    if max_size is not None and not max_size > 0:
+    if max_size is not None and not (isinstance(max_size, numbers.Real)
+                                     and 0 < max_size < math.inf):
         raise Error(f"max_size: expected a number of bytes, got {max_size!r:.60}")
     if reduce and max_size is None:
         raise Error("reduce: give max_size, the bytes to reduce to")

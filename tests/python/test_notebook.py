@@ -119,6 +119,13 @@ def test_export_reduces(tmp_path):
 
 
 def test_export_refuses(tmp_path):
+    for most in ("20M", 0, float("nan"), float("inf")):
+        with pytest.raises(pellucid.Error, match="max_size: expected a number of bytes"):
+            pellucid.export(None, tmp_path / "a.html", max_size=most)
+    for function in (lambda **how: pellucid.export(None, "a.html", **how),
+                     lambda **how: pellucid.view(None, open=False, **how)):
+        with pytest.raises(TypeError, match=r"^(export|view)\(\) got .* argument 'depth'"):
+            function(depth=True)
     with pytest.raises(pellucid.Error, match="ends in .html"):
         pellucid.export("builtin:sphere:8", tmp_path / "a.png")
     with pytest.raises(pellucid.Error, match="cannot write"):

@@ -390,8 +390,10 @@ def test_numbers_of_numpy_are_numbers():
 
 
 def test_unknown_keywords():
-    with pytest.raises(TypeError, match="tolerence"):
+    with pytest.raises(TypeError, match=r"^render\(\) got .* 'tolerence'"):
         pellucid.render(smooth(), tolerence=1)
+    with pytest.raises(TypeError, match=r"^scene_of\(\) got .* 'tolerence'"):
+        pellucid.scene_of(smooth(), tolerence=1)
 
 
 def test_gaussians_are_of_the_channels_of_the_data():
