@@ -29,6 +29,25 @@ def steps(times, values):
             + '</PointData></Piece></ImageData></VTKFile>').encode()
 
 
+# Cells that overlap, whose error is not known where they do.
+OVERLAPPING = """# vtk DataFile Version 3.0
+two cells
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 5 float
+0 0 0  1 0 0  0 1 0  0 0 1  0.2 0.2 0.8
+CELLS 2 10
+4 0 1 2 3
+4 0 1 2 4
+CELL_TYPES 2
+10 10
+POINT_DATA 5
+SCALARS v float 1
+LOOKUP_TABLE default
+0 1 2 3 4
+"""
+
+
 class Animate(ProgramTest):
     def scene(self, animation, **more):
         scene = {"layers": [{"field": {"builtin": "shells", "points": 16},
@@ -149,6 +168,16 @@ class Animate(ProgramTest):
                                 env=environment, check=False, capture_output=True, timeout=600)
         self.assertNotEqual(failed.returncode, 0)
         self.assertEqual(failed.stderr.count(b"cannot be a film"), 1)
+
+    def test_frames_over_the_tolerance_are_named(self):
+        self.write("mesh.vtk", OVERLAPPING)
+        options = ["mesh.vtk", "--size", "24", "-q", "--frames"]
+        for count, named in ((1, "frame 0 may be .*; its"), (2, "frames 0 and 1 may be .*; their"),
+                             (3, "frames 0, 1 and 2 may be .*; their")):
+            result = self.run_program("animate", *options, str(count), "-o",
+                                      f"f{count}/%d.png")
+            self.assertEqual(result.returncode, 3, result.stderr)
+            self.assertRegex(result.stderr.decode(), f"some pixels of {named} metadata say how")
 
     def test_steps_in_time(self):
         # Out of order in the file; the values of a step are all the same.
