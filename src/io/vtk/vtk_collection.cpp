@@ -125,10 +125,12 @@ std::vector<FileStep> image_steps(const fs::path& path) {
     return {};
   }
   const auto twice = std::ranges::adjacent_find(steps, {}, &FileStep::time);
-  throw Error(path.string() + ": " + one_line(twice->file.filename().string()) + " and " +
+  throw Error(path.string() + ": lists " + std::to_string(steps.size()) +
+              " files, images among them, of which one is read at each time, but " +
+              one_line(twice->file.filename().string()) + " and " +
               one_line((twice + 1)->file.filename().string()) +
-              " have the same time, and images are read one at each; give one of them another " +
-              "timestep, or open one of them");
+              " have the same; give one of them another timestep, or open one of them: " +
+              list_of(names_in(path)));
 }
 
 }  // namespace

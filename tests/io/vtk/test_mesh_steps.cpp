@@ -89,13 +89,17 @@ TEST_F(MeshSteps, SayTheRangeOfTheirFunction) {
   const SceneTimes times(description);
   SceneDescription ended = description;
   int asked = 0;
-  EXPECT_TRUE(choose_for_all_steps(ended, times, {}, [&] { return ++asked == 3; }).empty());
+  const StepsAsked ends{[&] { return ++asked == 3; }, {}};
+  EXPECT_TRUE(choose_for_all_steps(ended, times, {}, ends).empty());
   EXPECT_EQ(asked, 3);
-  EXPECT_FALSE(ended.layers[0].function_change.range);
+  EXPECT_FALSE(ended.layers[0].transfer_function);
   ASSERT_EQ(choose_for_all_steps(description, times), std::vector<std::size_t>{0});
-  ASSERT_TRUE(description.layers[0].function_change.range);
-  EXPECT_EQ((*description.layers[0].function_change.range)[0].number, 0);
-  EXPECT_EQ((*description.layers[0].function_change.range)[1].number, 43);
+  const LayerDescription& layer = description.layers[0];
+  EXPECT_FALSE(layer.function_change.range);
+  ASSERT_TRUE(layer.transfer_function);
+  const auto& points = std::get<std::vector<TransferFunction::Point>>(*layer.transfer_function);
+  EXPECT_EQ(points.front().value, 0);
+  EXPECT_EQ(points.back().value, 43);
 }
 
 }  // namespace
