@@ -47,6 +47,17 @@ class BadInput(ProgramTest):
         self.write("scene.json", scene if isinstance(scene, str) else json.dumps(scene))
         self.refuse(pattern, "scene.json")
 
+    def test_headers_with_a_byte_order_mark(self):
+        self.write("values.raw", bytes(range(8)))
+        for name, header in (
+                ("a.dat", "ObjectFileName: values.raw\nResolution: 2 2 2\nFormat: UCHAR\n"),
+                ("a.mhd", "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\n"
+                          "ElementType = MET_UCHAR\nElementDataFile = values.raw\n")):
+            self.write(name, header.encode("utf-8-sig"))
+            result = self.run_program("info", name)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertNotIn(b"more than is taken into account", result.stderr)
+
     def test_missing_file(self):
         self.refuse("nothing.npy", "nothing.npy", also_info=True)
         self.refuse("nothing.json", "nothing.json")

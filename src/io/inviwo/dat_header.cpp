@@ -22,6 +22,7 @@
 #include "files/input_file.h"
 #include "inviwo_values.h"
 #include "pellucid/scene/error.h"
+#include "text/latin_text.h"
 #include "text/printable.h"
 #include "text/text.h"
 #include "volumes/components.h"
@@ -47,7 +48,8 @@ Fields read_fields(const fs::path& path, const std::string& name) {
   if (check_input_file(path) > largest) return fields;
   std::ifstream file(path, std::ios::binary);
   std::string line;
-  while (std::getline(file, line)) {
+  for (bool is_first = true; std::getline(file, line); is_first = false) {
+    if (is_first) drop_mark(line);
     if (line.find('\0') != std::string::npos) return {};
     // As Inviwo reads it: the rest of a line behind # is a comment, and so is one that begins with
     // /.
@@ -57,8 +59,8 @@ Fields read_fields(const fs::path& path, const std::string& name) {
     const std::string_view word = trimmed(text.substr(0, colon));
     const std::string key = in_small_letters(word);
     Field field{std::string(word), std::string(trimmed(text.substr(colon + 1)))};
-    const auto [place, is_first] = fields.try_emplace(key, field);
-    if (is_first) continue;
+    const auto [place, is_new] = fields.try_emplace(key, field);
+    if (is_new) continue;
     place->second.is_repeated = place->second.is_repeated || place->second.value != field.value;
     if (key == "rawfile") {
       throw Error(name + ": names several files of values; save one of them as a volume");

@@ -22,6 +22,7 @@
 #include "itk_header.h"
 #include "pellucid/scene/error.h"
 #include "text/header_keys.h"
+#include "text/latin_text.h"
 #include "text/printable.h"
 #include "text/text.h"
 #include "volumes/components.h"
@@ -196,6 +197,7 @@ std::vector<Field> read_fields(const fs::path& path) {
   std::vector<Field> fields;
   std::string line;
   for (int lines = 0; lines < 10000 && std::getline(file, line); ++lines) {
+    if (lines == 0) drop_mark(line);
     const std::size_t sign = line.find('=');
     if (sign == std::string::npos) continue;
     const std::string_view text = line;

@@ -28,6 +28,11 @@ inline bool is_utf8(std::string_view text) {
   return true;
 }
 
+/// Takes the mark from a text's beginning that some programs put before UTF-8.
+inline void drop_mark(std::string& text) {
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
+}
+
 /// Returns a text as UTF-8: one that is not is taken as Latin-1 (ISO 8859-1).
 inline std::string as_utf8(std::string_view text) {
   if (is_utf8(text)) return std::string(text);
