@@ -6,15 +6,12 @@
 #include <utility>
 
 #include "enum_names.h"
+#include "finite.h"
 #include "message.h"
 #include "pellucid/scene/error.h"
 
 namespace pellucid {
 namespace {
-
-bool is_finite(const Vec3<double>& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 TransferFunction factors(const std::vector<GradientOpacity::Point>& points, double unit) {
   std::vector<TransferFunction::Point> result;

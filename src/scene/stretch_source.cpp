@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "finite.h"
 #include "message.h"
 #include "moved_source.h"
 #include "pellucid/geometry/box_around.h"
@@ -15,10 +16,6 @@
 
 namespace pellucid {
 namespace {
-
-bool is_finite(const Vec3<double>& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 [[noreturn]] void fail(const StretchSource::Description& description, const std::string& what) {
   throw Error((description.name.empty() ? "stretch source" : description.name) + ": " + what);

@@ -14,7 +14,7 @@ using Vector = Vec3<Real>;
 
 /// The ray itself is rounded to double.
 constexpr Real epsilon = std::numeric_limits<double>::epsilon();
-constexpr Real infinity = std::numeric_limits<Real>::infinity();
+constexpr Real unbounded = std::numeric_limits<Real>::infinity();
 
 Vector wide(const Vec3<double>& v) {
   return {v.x, v.y, v.z};
@@ -26,7 +26,7 @@ Real size(const Vector& v) {
 
 /// An interval of a line with the errors of its ends. Empty where begin > end.
 struct Chord {
-  Real begin = -infinity, end = infinity;
+  Real begin = -unbounded, end = unbounded;
   Real begin_error = 0, end_error = 0;
   /// Rounding decides whether the line is inside at all, and whether it seems to be: of a line
   /// along a surface.
@@ -41,8 +41,8 @@ struct Chord {
     if (t < end) end = t, end_error = error;
   }
   void clear() {
-    begin = infinity;
-    end = -infinity;
+    begin = unbounded;
+    end = -unbounded;
     begin_error = end_error = 0;
   }
 
@@ -172,7 +172,7 @@ void ClipIntervals::cut(const Clip& clip, const Ray<double>& ray) {
     if (chord.outside) chord.clear();
   }
   // The ends of an empty chord count where errors could fill it.
-  const auto matters = [](Real t) { return std::abs(t) < infinity; };
+  const auto matters = [](Real t) { return std::abs(t) < unbounded; };
   const bool grazes =
       chord.empty() && chord.begin - chord.end <= chord.begin_error + chord.end_error;
   Interval<double> inside{1, 0};

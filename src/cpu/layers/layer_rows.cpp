@@ -15,7 +15,7 @@ namespace pellucid {
 namespace {
 
 using Row = PellucidLayerRow;
-constexpr float unit = rounding_unit<float>;
+constexpr float unit_of_float = rounding_unit<float>;
 
 float largest_size(const CubicBernstein<double>& f) {
   return static_cast<float>(std::max(std::fabs(f.hull_min()), std::fabs(f.hull_max())));
@@ -78,7 +78,7 @@ bool write_curves(int variables, const LayerStretch& stretch, Interval<double> r
     const float size = largest_size(data);
     if (!(size < 1e30f)) return false;
     for (int b = 0; b < 4; ++b) to[4 * c + b] = static_cast<float>(data.b[b]);
-    to[4 * variables + c] = 8 * unit * size + single_above(stretch.value_error[c]);
+    to[4 * variables + c] = 8 * unit_of_float * size + single_above(stretch.value_error[c]);
   }
   return true;
 }
@@ -211,7 +211,7 @@ bool prepare(SeenLayer& one, const PacketLight& lights,
 }
 
 float single_above(double x) {
-  return static_cast<float>(x) * (1 + 2 * unit);
+  return static_cast<float>(x) * (1 + 2 * unit_of_float);
 }
 
 bool write_part(const SeenLayer& layer, int number, const LayerStretch& stretch,
@@ -253,8 +253,9 @@ bool write_part(const SeenLayer& layer, int number, const LayerStretch& stretch,
   } else {
     const BinnedTransfer& function = *layer.function[static_cast<std::size_t>(number)];
     const float size = largest_size(data);
-    const float rounding =
-        8 * unit * size + 24 * unit * static_cast<float>(most - least) + single_above(value_error);
+    const float rounding = 8 * unit_of_float * size +
+                           24 * unit_of_float * static_cast<float>(most - least) +
+                           single_above(value_error);
     if (!(size < 1e30f) || !(2 * rounding < function.narrowest)) return false;
     bool jumps = false;
     absorbs = may_absorb(function, true, static_cast<float>(least) - rounding,

@@ -14,13 +14,13 @@ namespace pellucid {
 namespace {
 
 // PS3.6.
-namespace tag {
+namespace frame_tag {
 constexpr DicomTag modality = 0x00080060, thickness = 0x00180050,
                    spacing_between_slices = 0x00180088, frame_time = 0x00181063,
                    frame_time_vector = 0x00181065, slice_locations = 0x00182005,
                    frame_increment = 0x00280009, slice_vector = 0x00540080,
                    grid_frame_offsets = 0x3004000c;
-}  // namespace tag
+}  // namespace frame_tag
 
 // What else may differ between the frames of nuclear medicine.
 constexpr std::array<std::pair<DicomTag, const char*>, 8> other_vectors{
@@ -61,11 +61,11 @@ DicomFrameOffsets of_decimals(const DicomDataSet& data, DicomTag tag, const std:
 DicomFrameOffsets of_dose(const DicomDataSet& data, int frames, const Vec3<double>& normal,
                           const std::optional<Vec3<double>>& position) {
   const std::string name = "GridFrameOffsetVector (3004,000C)";
-  DicomFrameOffsets offsets = of_decimals(data, tag::grid_frame_offsets, name, frames);
+  DicomFrameOffsets offsets = of_decimals(data, frame_tag::grid_frame_offsets, name, frames);
   if (!offsets.refused.empty()) return offsets;
   // The vector begins with 0 and is relative to the first plane, along the normal; or it begins
   // with the z of the first plane, of axial planes alone, and is along z.
-  const double first = data.decimals(tag::grid_frame_offsets).front();
+  const double first = data.decimals(frame_tag::grid_frame_offsets).front();
   if (first == 0) return offsets;
   constexpr double axial = 1e-3, rounding = 0.01;
   const bool is_axial = std::abs(std::abs(normal.z) - 1) < axial;
@@ -79,7 +79,7 @@ DicomFrameOffsets of_dose(const DicomDataSet& data, int frames, const Vec3<doubl
 }
 
 DicomFrameOffsets of_slice_numbers(const DicomDataSet& data, int frames) {
-  const std::vector<int> numbers = data.whole_numbers(tag::slice_vector);
+  const std::vector<int> numbers = data.whole_numbers(frame_tag::slice_vector);
   if (numbers.size() != static_cast<std::size_t>(frames)) {
     return refuse("its SliceVector (0054,0080) has " + std::to_string(numbers.size()) +
                   " numbers, but there are " + std::to_string(frames) + " frames");
@@ -97,9 +97,9 @@ DicomFrameOffsets of_slice_numbers(const DicomDataSet& data, int frames) {
     const std::vector<double> found = data.decimals(tag);
     return found.empty() ? 0 : found.front();
   };
-  double step = first(tag::spacing_between_slices);
+  double step = first(frame_tag::spacing_between_slices);
   if (step == 0) {
-    step = first(tag::thickness);
+    step = first(frame_tag::thickness);
     if (!(step > 0)) return refuse("nothing says how far apart its frames stand");
     offsets.note =
         "the distance of slices is taken to be their thickness, " + readable_number(step) + " mm";
@@ -113,22 +113,22 @@ DicomFrameOffsets of_slice_numbers(const DicomDataSet& data, int frames) {
 DicomFrameOffsets dicom_frame_offsets(const DicomDataSet& data, int frames,
                                       const Vec3<double>& normal,
                                       const std::optional<Vec3<double>>& position) {
-  const std::vector<DicomTag> pointers = data.tags(tag::frame_increment);
+  const std::vector<DicomTag> pointers = data.tags(frame_tag::frame_increment);
   const auto points_to = [&](DicomTag tag) {
     return std::ranges::find(pointers, tag) != pointers.end();
   };
-  const bool is_dose = data.text(tag::modality) == "RTDOSE";
+  const bool is_dose = data.text(frame_tag::modality) == "RTDOSE";
   const auto counts = [&](DicomTag tag) {
     return has(data, tag) && (is_dose || pointers.empty() || points_to(tag));
   };
-  if (counts(tag::grid_frame_offsets)) return of_dose(data, frames, normal, position);
-  if (counts(tag::slice_locations)) {
-    return of_decimals(data, tag::slice_locations, "SliceLocationVector (0018,2005)", frames);
+  if (counts(frame_tag::grid_frame_offsets)) return of_dose(data, frames, normal, position);
+  if (counts(frame_tag::slice_locations)) {
+    return of_decimals(data, frame_tag::slice_locations, "SliceLocationVector (0018,2005)", frames);
   }
-  if (counts(tag::slice_vector)) return of_slice_numbers(data, frames);
-  const std::vector<double> step = data.decimals(tag::spacing_between_slices);
-  const bool is_film = has(data, tag::frame_time) || has(data, tag::frame_time_vector);
-  const bool points_elsewhere = !pointers.empty() && !points_to(tag::spacing_between_slices);
+  if (counts(frame_tag::slice_vector)) return of_slice_numbers(data, frames);
+  const std::vector<double> step = data.decimals(frame_tag::spacing_between_slices);
+  const bool is_film = has(data, frame_tag::frame_time) || has(data, frame_tag::frame_time_vector);
+  const bool points_elsewhere = !pointers.empty() && !points_to(frame_tag::spacing_between_slices);
   if (!step.empty() && step.front() != 0 && !is_film && (is_dose || !points_elsewhere)) {
     DicomFrameOffsets offsets;
     for (int k = 0; k < frames; ++k) offsets.offset.push_back(k * step.front());

@@ -16,7 +16,7 @@ namespace {
 /// Limit of data, but for the last of them: positions of nodes that are farther away are these.
 constexpr double farthest = 2e37;
 /// Relative rounding of the ends of intervals, and of VTK's own arithmetic.
-constexpr double rounding = 1e-13;
+constexpr double rounding_of_vtk = 1e-13;
 /// Points of one function. What is finer is fitted more coarsely, and told.
 constexpr std::size_t max_points = 200'000;
 /// Places at which a curve is compared with VTK's own function.
@@ -204,7 +204,7 @@ class Fitter {
       push({p.value, given_.is_color ? p.color : value});
     }
     made_.deviation = given_.is_color ? chords.color_deviation() : chords.depth_deviation();
-    if (made_.deviation > 0) made_.deviation += rounding;
+    if (made_.deviation > 0) made_.deviation += rounding_of_vtk;
     made_.deviation += way_deviation_;
     if (has_lab_step_) made_.deviation += lab_step;
   }
