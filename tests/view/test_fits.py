@@ -3,6 +3,7 @@
 
 import json
 import signal
+import threading
 import unittest
 
 from viewer_process import Viewer
@@ -41,14 +42,19 @@ class Fits(unittest.TestCase):
     def test_progress_is_told(self):
         with Viewer(FIELD) as viewer, viewer.open_socket() as page, viewer.open_socket() as other:
             page.exact_frame()
+            # A page that answers no ping for half a minute is closed.
+            by_other = []
+            reader = threading.Thread(target=lambda: by_other.extend(self.fitted(other)))
+            reader.start()
             page.send(type="suggest", layer=0, kind="gaussians")
             messages = self.fitted(page)
+            reader.join()
             told = [m["fraction"] for m in messages if m["type"] == "progress"]
             self.assertEqual(told[0], 0)
             self.assertGreater(len(told), 2)
             self.assertIn("gaussians", [m for m in messages if m["type"] == "scene"][-1][
                 "scene"]["layers"][0]["transfer_function"])
-            self.assertGreater(len(self.fitted(other)), 2)
+            self.assertGreater(len(by_other), 2)
 
     def test_an_edit_meanwhile_is_kept(self):
         with Viewer(FIELD) as viewer, viewer.open_socket() as page:
