@@ -24,6 +24,9 @@ std::optional<FilmFrame> FilmFrames::load_next(int frame) {
     std::string made_from = tasks_.made_from(description);
     if (files_.has(frame, made_from)) {
       ++kept_;
+      if (files_.text(frame, "pellucid.pixels_over").value_or("0") != "0") {
+        kept_over_.push_back(frame);
+      }
       continue;
     }
     Scene scene = loader_.load(description, parallel_);
@@ -53,6 +56,8 @@ void FilmFrames::render() {
     ++made_;
     next = ahead.get();
   }
+  over_.insert(over_.end(), kept_over_.begin(), kept_over_.end());
+  std::ranges::sort(over_);
 }
 
 void FilmFrames::render(const FilmFrame& frame, const std::function<bool(double)>& progress) {

@@ -55,7 +55,7 @@ class FilmFrames {
   int made() const noexcept { return made_; }
   int kept() const noexcept { return kept_; }
   double largest_error() const noexcept { return largest_error_; }
-  /// Returns the frames with pixels over the tolerance.
+  /// Returns the frames with pixels over the tolerance, also of those that were there, ascending.
   const std::vector<int>& over() const noexcept { return over_; }
 
  private:
@@ -70,7 +70,7 @@ class FilmFrames {
   RenderOptions options_;
   Tasks tasks_;
   Renderer renderer_;
-  std::vector<int> over_;
+  std::vector<int> over_, kept_over_;  ///< these are counted while a frame is rendered
   int made_ = 0;
   std::atomic<int> kept_ = 0;  ///< counted while a frame is rendered
   double largest_error_ = 0;

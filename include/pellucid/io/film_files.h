@@ -41,6 +41,8 @@ class FilmFiles {
 
   /// Returns whether the picture of a frame is there, whole, and was made from the same.
   bool has(int frame, const std::string& made_from) const;
+  /// Returns what the picture of a frame that is there says of itself under a name of its metadata.
+  std::optional<std::string> text(int frame, const std::string& name) const;
   /// Writes the picture of a frame. A .png is composited over the background, if there is one; of a
   /// video without one over calm_background().
   /// Throws Error.

@@ -151,6 +151,10 @@ bool FilmFiles::has(int frame, const std::string& made_from) const {
   return text && *text == made_from;
 }
 
+std::optional<std::string> FilmFiles::text(int frame, const std::string& name) const {
+  return picture_text(picture(frame), name);
+}
+
 void FilmFiles::write(int frame, const Image& image, const std::string& made_from,
                       const std::optional<Background>& background) const {
   Image stamped = image;

@@ -186,10 +186,10 @@ MeshFile read_mesh(const std::filesystem::path& path, const MeshReadOptions& opt
     MeshFile file = join_blocks(read_blocks(path, options), path.string());
     file.times = ascending_times(std::move(file.times));
     const auto step = std::ranges::find(file.times, file.time.value_or(0));
-    if (options.time && file.time && file.times.size() > 1 && step != file.times.end() &&
-        options.time_between == TimeBetween::nearest) {
+    if (options.note && options.time && file.time && file.times.size() > 1 &&
+        step != file.times.end() && options.time_between == TimeBetween::nearest) {
       const auto number = static_cast<std::size_t>(step - file.times.begin());
-      file.notes.push_back(path.string() + ": " + step_note(file.times, number, *options.time));
+      options.note(path.string() + ": " + step_note(file.times, number, *options.time));
     }
     for (const std::string& note : file.notes) {
       if (options.note) options.note(note);
