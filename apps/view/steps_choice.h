@@ -20,7 +20,7 @@ class StepsChoice {
     SceneDescription description;     ///< with what was chosen
     std::vector<std::size_t> layers;  ///< for which something was chosen
     std::string error;                ///< why nothing was; empty: nothing failed
-    std::string notes;                ///< of steps that do not count
+    std::string notes;                ///< steps that do not count, and why
   };
   /// Called once by the other thread, after which nothing is called.
   using Done = std::function<void(Outcome)>;

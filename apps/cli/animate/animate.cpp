@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "arguments/output.h"
 #include "arguments/overwriting.h"
 #include "arguments/parse.h"
 #include "commands.h"
@@ -112,7 +113,9 @@ int run_on_ranks(AnimateArguments arguments) {
   }
   for (const std::string& text : ranks->gather_all(failure)) {
     if (text.empty()) continue;
-    if (is_first) throw Error(text);
+    if (is_first) print_error(text);
+    // mpirun ends all when one fails: not before this one has spoken.
+    static_cast<void>(ranks->gather_all(""));
     return 1;
   }
   std::vector<int> all_over;

@@ -24,6 +24,11 @@ void print_note(const std::string& text) {
   std::fputs(("pellucid: " + one_line(text) + '\n').c_str(), stderr);
 }
 
+void print_error(const std::string& message) {
+  print_note("error: " + message);
+  std::fflush(stderr);
+}
+
 Json to_json(const Vec3<double>& v) {
   return Json::array({v.x, v.y, v.z});
 }

@@ -17,6 +17,8 @@ void print_text(const std::string& text);
 void print_json(const Json& json);
 /// Prints "pellucid: …" on stderr; one line.
 void print_note(const std::string& text);
+/// Prints an error on stderr likewise, at once.
+void print_error(const std::string& message);
 
 Json to_json(const Vec3<double>& v);
 Json dimensions_json(const Volume& volume);

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "arguments/output.h"
 #include "arguments/parse.h"
 #include "pellucid/cluster/communicator.h"
 #include "pellucid/cluster/load.h"
@@ -27,11 +28,6 @@
 namespace pellucid::cli {
 
 namespace {
-
-void print_error(const std::string& message) {
-  std::fputs(fmt::format("pellucid: error: {}\n", one_line(message)).c_str(), stderr);
-  std::fflush(stderr);
-}
 
 /// Refuses arguments that need all of the data in one process.
 void refuse_arguments(const RenderArguments& arguments) {

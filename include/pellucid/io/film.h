@@ -116,10 +116,10 @@ class FrameLoader {
 /// whose sources have options of their own.
 void copy_choice(const LayerDescription& from, LayerDescription& to);
 
-/// What choose_for_all_steps() asks and tells meanwhile; each may be empty.
+/// Functions that choose_for_all_steps() calls meanwhile; each may be empty.
 struct StepsAsked {
-  std::function<bool()> ended{};                   ///< before each step is read: whether to end
-  std::function<void(const std::string&)> note{};  ///< of a step that does not count, and why
+  std::function<bool()> ended{};                   ///< is asked before each step: whether to end
+  std::function<void(const std::string&)> note{};  ///< is told of a step that does not count
 };
 
 /// Chooses what the scene leaves to its data, such as the function, the surfaces and the range of a

@@ -194,7 +194,7 @@ class PooledLabels {
   std::optional<double> extinction_;
 };
 
-/// What is read of the steps of one source.
+/// Reader of the steps of one source.
 class StepReader {
  public:
   StepReader(FieldSource source, const StepsAsked& asked)
@@ -274,7 +274,7 @@ bool choose_labels(LayerDescription& layer, const std::vector<double>& steps,
   return true;
 }
 
-/// What was found out of a layer.
+/// Outcome of a choice.
 enum class Chosen { nothing, something, ended };
 
 Chosen choose_of_volume(LayerDescription& layer, const std::vector<double>& all,
