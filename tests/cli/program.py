@@ -21,6 +21,24 @@ SOURCE_DIR = os.environ.get(
 HAZE = {"points": [{"value": 0, "extinction": 0.5, "color": [1, 0, 0]},
                    {"value": 1, "extinction": 1.5, "color": [0, 0, 1]}]}
 
+# Cells that overlap, whose error is not known where they do.
+OVERLAPPING = """# vtk DataFile Version 3.0
+two cells
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 5 float
+0 0 0  1 0 0  0 1 0  0 0 1  0.2 0.2 0.8
+CELLS 2 10
+4 0 1 2 3
+4 0 1 2 4
+CELL_TYPES 2
+10 10
+POINT_DATA 5
+SCALARS v float 1
+LOOKUP_TABLE default
+0 1 2 3 4
+"""
+
 
 class ProgramTest(unittest.TestCase):
     """Each test has a folder of its own, which is the working folder of the program."""

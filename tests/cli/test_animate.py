@@ -11,7 +11,7 @@ import subprocess
 import time
 import unittest
 
-from program import PROGRAM, ProgramTest, npy, pixel, png, png_texts
+from program import OVERLAPPING, PROGRAM, ProgramTest, npy, pixel, png, png_texts
 
 FFMPEG = shutil.which("ffmpeg")
 TIMES = [0.0, 0.5, 2.0, 4.0]
@@ -27,25 +27,6 @@ def steps(times, values):
             f'Spacing="1 1 1" TimeValues="{" ".join(map(str, times))}">'
             '<Piece Extent="0 3 0 3 0 3"><PointData Scalars="a">' + arrays
             + '</PointData></Piece></ImageData></VTKFile>').encode()
-
-
-# Cells that overlap, whose error is not known where they do.
-OVERLAPPING = """# vtk DataFile Version 3.0
-two cells
-ASCII
-DATASET UNSTRUCTURED_GRID
-POINTS 5 float
-0 0 0  1 0 0  0 1 0  0 0 1  0.2 0.2 0.8
-CELLS 2 10
-4 0 1 2 3
-4 0 1 2 4
-CELL_TYPES 2
-10 10
-POINT_DATA 5
-SCALARS v float 1
-LOOKUP_TABLE default
-0 1 2 3 4
-"""
 
 
 class Animate(ProgramTest):

@@ -9,7 +9,7 @@ import unittest
 import xml.etree.ElementTree
 import zlib
 
-from program import HAZE, ProgramTest, npy, pixel, png, ramp
+from program import HAZE, OVERLAPPING, ProgramTest, npy, pixel, png, ramp
 
 HAS_CAIRO = os.environ.get("PELLUCID_HAS_CAIRO") == "1"
 WIDTH = 85 * 72 / 25.4
@@ -297,22 +297,7 @@ class Figures(ProgramTest):
 
     def test_caption_counts_pixels_over_the_tolerance(self):
         # Two cells that overlap: what is seen through them is not known.
-        self.write("mesh.vtk", """# vtk DataFile Version 3.0
-two cells
-ASCII
-DATASET UNSTRUCTURED_GRID
-POINTS 5 float
-0 0 0  1 0 0  0 1 0  0 0 1  0.2 0.2 0.8
-CELLS 2 10
-4 0 1 2 3
-4 0 1 2 4
-CELL_TYPES 2
-10 10
-POINT_DATA 5
-SCALARS v float 1
-LOOKUP_TABLE default
-0 1 2 3 4
-""")
+        self.write("mesh.vtk", OVERLAPPING)
         result = self.run_program("render", "mesh.vtk", "--size", "40", "--figure", "a.pdf")
         if result.returncode == 0:
             self.skipTest("these cells are rendered to the tolerance")
