@@ -79,15 +79,6 @@ void apply(const Edit& edit, Json& document) {
   put(layer, edit.key, std::move(value));
 }
 
-/// Copies the function of a layer, its surfaces, its light and the look of its labels.
-void copy_look(const LayerDescription& from, LayerDescription& to) {
-  to.transfer_function = from.transfer_function;
-  to.function_change = from.function_change;
-  to.isosurfaces = from.isosurfaces;
-  to.shading = from.shading;
-  if (from.labels && to.labels) to.labels->styles = from.labels->styles;
-}
-
 std::string text_of(const LayerDescription& layer) {
   return layer.transfer_function ? transfer_function_to_json(*layer.transfer_function) : "";
 }

@@ -278,11 +278,16 @@ void refuse_options_of_one_layer(const RenderArguments& arguments,
   }
 }
 
-/// Returns the first option that says how INPUT is shown; empty: none is given.
-std::string option_of_input(const RenderArguments& arguments) {
+/// Returns the first option that gives a function; empty: none is given.
+std::string option_of_function(const RenderArguments& arguments) {
   if (!arguments.transfer_function.empty()) return "--tf";
   if (!arguments.preset.empty()) return "--preset";
-  if (!arguments.gaussians.empty()) return "--gaussian";
+  return arguments.gaussians.empty() ? "" : "--gaussian";
+}
+
+/// Returns the first option that says how INPUT is shown; empty: none is given.
+std::string option_of_input(const RenderArguments& arguments) {
+  if (std::string function = option_of_function(arguments); !function.empty()) return function;
   if (!arguments.projection.empty()) return "--projection";
   const std::string option = arguments.colors.option_of_a_layer();
   return option.empty() ? arguments.light.option_of_a_layer() : option;
@@ -307,15 +312,9 @@ void refuse_options_of_input(const RenderArguments& arguments) {
 
 /// Throws UsageError where an argument gives a function to labels of a scene.
 void refuse_function_of_labels(const RenderArguments& arguments, const LayerDescription& layer) {
-  if (!layer.labels) return;
-  const std::pair<const char*, bool> given[] = {{"--tf", !arguments.transfer_function.empty()},
-                                                {"--preset", !arguments.preset.empty()},
-                                                {"--gaussian", !arguments.gaussians.empty()}};
-  for (const auto& [argument, is_given] : given) {
-    if (!is_given) continue;
-    throw UsageError(
-        fmt::format("{}: labels have colors of their own; give a table of them", argument));
-  }
+  const std::string option = option_of_function(arguments);
+  if (!layer.labels || option.empty()) return;
+  throw UsageError(option + ": labels have colors of their own; give a table of them");
 }
 
 /// Adds the layers of --layer and --labels, and the clips of --clip.

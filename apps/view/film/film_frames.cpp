@@ -57,7 +57,6 @@ void FilmFrames::render() {
     next = ahead.get();
   }
   over_.insert(over_.end(), kept_over_.begin(), kept_over_.end());
-  std::ranges::sort(over_);
 }
 
 void FilmFrames::render(const FilmFrame& frame, const std::function<bool(double)>& progress) {

@@ -55,7 +55,7 @@ class FilmFrames {
   int made() const noexcept { return made_; }
   int kept() const noexcept { return kept_; }
   double largest_error() const noexcept { return largest_error_; }
-  /// Returns the frames with pixels over the tolerance, also of those that were there, ascending.
+  /// Returns the frames with pixels over the tolerance, also of those that were there.
   const std::vector<int>& over() const noexcept { return over_; }
 
  private:

@@ -112,6 +112,8 @@ class FrameLoader {
   Scene scene_;
 };
 
+/// Copies the function of a layer, its surfaces, its light and, if both have labels, their look.
+void copy_look(const LayerDescription& from, LayerDescription& to);
 /// Writes what was chosen of a layer by choose_for_all_steps() into a description of this layer
 /// whose sources have options of their own.
 void copy_choice(const LayerDescription& from, LayerDescription& to);

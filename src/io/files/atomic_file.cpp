@@ -12,6 +12,7 @@
 #include "input_file.h"
 #include "pellucid/io/image_files.h"
 #include "pellucid/scene/error.h"
+#include "text/latin_text.h"
 
 namespace pellucid {
 
@@ -99,7 +100,7 @@ std::string read_text_file(const fs::path& path, std::size_t largest) {
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
     throw Error(path.string() + ": is text in UTF-16; save it as UTF-8");
   }
-  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
+  drop_mark(text);
   return text;
 }
 

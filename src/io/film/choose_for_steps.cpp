@@ -251,9 +251,10 @@ const Look& of_most(const std::vector<Look>& looks) {
   return *best;
 }
 
-/// Takes a layer's field for labels.
-void make_labels(LayerDescription& layer) {
-  if (!layer.labels) layer.labels = LabelSource{std::exchange(layer.field, {}), {}, {}, {}};
+/// Shows these labels.
+void write_labels(const PooledLabels& labels, LayerDescription& layer) {
+  show_as_labels(layer);
+  layer.labels->styles = labels.styles(layer.labels->extinction);
 }
 
 /// Chooses the labels of a layer from all of these steps. Returns false where it was ended.
@@ -269,8 +270,7 @@ bool choose_labels(LayerDescription& layer, const std::vector<double>& steps,
     }
   };
   if (!reader.visit(steps, add)) return false;
-  make_labels(layer);
-  layer.labels->styles = labels.styles(layer.labels->extinction);
+  write_labels(labels, layer);
   return true;
 }
 
@@ -316,7 +316,9 @@ Chosen choose_of_volume(LayerDescription& layer, const std::vector<double>& all,
     }
     if (layer.look->chosen) layer.look->chosen(look);
     layer.look.reset();
-    return as_labels();
+    if (!labels || steps.size() < all.size()) return as_labels();
+    write_labels(*labels, layer);
+    return Chosen::something;
   }
   Look of_all = choose_look(pooled.take(), look.name, layer.function_change);
   of_all.reason = look.reason;
@@ -329,10 +331,11 @@ Chosen choose_of_volume(LayerDescription& layer, const std::vector<double>& all,
 Chosen choose_of_mesh(LayerDescription& layer, const std::vector<double>& steps,
                       const ParallelFor& parallel, const StepsAsked& asked) {
   MeshSource source = *layer.mesh;
-  std::shared_ptr<const MeshChannels> mesh;
+  std::shared_ptr<const MeshChannels> first, mesh;
   const auto load = [&](double step) {
     source.options.time = step;
     mesh = load_mesh_step(source, mesh.get(), parallel).mesh;
+    if (!first) first = mesh;
   };
   if (!layer.function_change.range) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -347,12 +350,12 @@ Chosen choose_of_mesh(LayerDescription& layer, const std::vector<double>& steps,
     if (!(range[0] < range[1])) return Chosen::nothing;
     layer.function_change.range = RangeEnds{RangeEnd{range[0]}, RangeEnd{range[1]}};
   }
-  load(steps.front());
+  if (!first) load(steps.front());
   if (takes_look(layer)) {
-    write_look(look_of(*mesh, layer), layer);
+    write_look(look_of(*first, layer), layer);
     return Chosen::something;
   }
-  return choose_function(layer, *mesh) ? Chosen::something : Chosen::nothing;
+  return choose_function(layer, *first) ? Chosen::something : Chosen::nothing;
 }
 
 }  // namespace
@@ -363,7 +366,7 @@ std::vector<std::size_t> choose_for_all_steps(SceneDescription& description,
   std::vector<std::size_t> changed_layers;
   for (std::size_t i = 0; i < description.layers.size(); ++i) {
     LayerDescription& layer = description.layers[i];
-    const std::vector<double>& steps = times.of(i);
+    const std::vector<double> steps = times.of(i);
     if (steps.size() < 2 || !leaves_open(layer)) continue;
     const Chosen found = layer.mesh ? choose_of_mesh(layer, chosen(steps), parallel, asked)
                                     : choose_of_volume(layer, steps, asked);

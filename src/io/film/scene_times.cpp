@@ -8,6 +8,7 @@
 #include "pellucid/io/film.h"
 #include "pellucid/io/time_steps.h"
 #include "pellucid/scene/error.h"
+#include "scene/layer_functions.h"
 #include "text/json_document.h"
 #include "text/printable.h"
 
@@ -132,16 +133,18 @@ void resolve_time(SceneDescription& description) {
   description.time.reset();
 }
 
-void copy_choice(const LayerDescription& from, LayerDescription& to) {
-  if (from.labels && !to.mesh) {
-    if (!to.labels) to.labels = LabelSource{std::exchange(to.field, {}), {}, {}, {}};
-    to.labels->styles = from.labels->styles;
-  }
-  to.slices = from.slices;
+void copy_look(const LayerDescription& from, LayerDescription& to) {
   to.transfer_function = from.transfer_function;
   to.function_change = from.function_change;
-  to.shading = from.shading;
   to.isosurfaces = from.isosurfaces;
+  to.shading = from.shading;
+  if (from.labels && to.labels) to.labels->styles = from.labels->styles;
+}
+
+void copy_choice(const LayerDescription& from, LayerDescription& to) {
+  if (from.labels) show_as_labels(to);
+  copy_look(from, to);
+  to.slices = from.slices;
   to.look = from.look;
 }
 

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
+
 #include "pellucid/io/scene_json.h"
 
 namespace pellucid {
 
+/// Makes the field of a layer its labels, which have no light, if it has no labels yet.
+inline void show_as_labels(LayerDescription& layer) {
+  if (layer.labels) return;
+  layer.labels = LabelSource{std::exchange(layer.field, {}), {}, {}, {}};
+  layer.shading.reset();
+}
 /// Returns whether choose_look() says how a layer is shown.
 bool takes_look(const LayerDescription& description);
 /// Return the look of such a layer with these data. Throw Error.

@@ -4,6 +4,7 @@
 #include <utility>
 #include <variant>
 
+#include "layer_functions.h"
 #include "pellucid/io/internal/patient_space.h"
 #include "pellucid/io/read_volume.h"
 #include "pellucid/io/scene_json.h"
@@ -17,10 +18,7 @@ void complete_description(const Layer& layer, LayerDescription& description) {
     return !function || std::holds_alternative<PresetDescription>(*function);
   };
   if (auto* labels = std::get_if<LabelContent>(&layer.content)) {
-    if (!description.labels) {  // a look that shows labels
-      description.labels = LabelSource{std::exchange(description.field, {}), {}, {}, {}};
-      description.shading.reset();
-    }
+    show_as_labels(description);  // of a look that does
     description.labels->styles = labels->table->styles();
     description.labels->table.clear();
     description.labels->extinction.reset();
