@@ -5,6 +5,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import xml.etree.ElementTree
 
 import numpy
@@ -13,6 +14,9 @@ import pytest
 import pellucid
 import pellucid.mpl
 from conftest import smooth
+
+sys.path.insert(0, os.path.join(os.environ["PELLUCID_SOURCE_DIR"], "tests", "cli"))
+from svg import properties  # noqa: E402
 
 needs_cairo = pytest.mark.skipif(os.environ.get("PELLUCID_HAS_CAIRO") != "1",
                                  reason="built without Cairo")
@@ -75,14 +79,14 @@ class Drawn:
                 self.scale, self.left, self.top = (float(matrix[i]) for i in (0, 4, 5))
         self.axes, self.ticks, self.scale_bars = [], [], []
         for path in root.iter(SVG + "path"):
-            style = path.get("style") or ""
+            drawn = properties(path)
             numbers = [float(n) for n in re.findall(r"-?[0-9.]+", path.get("d"))]
-            if len(numbers) != 4 or "fill:none" not in style:
+            if len(numbers) != 4 or drawn.get("fill") != "none":
                 continue
             line = (numpy.array(numbers).reshape(2, 2) - (self.left, self.top)) / self.scale
-            if "stroke-width:1.4;" in style:
+            if drawn["stroke-width"] == "1.4":
                 self.scale_bars.append(line)
-            if "stroke-width:0.6;stroke-linecap:round" not in style:
+            if (drawn["stroke-width"], drawn["stroke-linecap"]) != ("0.6", "round"):
                 continue
             length = numpy.linalg.norm(line[1] - line[0]) * self.scale
             (self.ticks if abs(length - 2.5) < 0.02 else self.axes).append(line)
