@@ -86,6 +86,7 @@ std::vector<NamedScene> rank_scenes(int size) {
   std::size_t n = 0;
   for (const auto group : {layer_gallery, light_gallery}) {
     for (const GalleryEntry& entry : group()) {
+      if (!entry.why_missing().empty()) continue;
       const Exhibit exhibit = entry.make(size);
       for (std::size_t camera = 0; camera < exhibit.cameras.size(); ++camera) {
         // One camera after the other in the short run.

@@ -311,6 +311,7 @@ TEST(LayerPackets, AgreeWithTheGeneralPathOnTheGallery) {
   std::size_t camera = 0;
   for (const auto& gallery : {scenes::layer_gallery(), scenes::light_gallery()}) {
     for (const scenes::GalleryEntry& entry : gallery) {
+      if (!entry.why_missing().empty()) continue;
       SCOPED_TRACE(entry.name);
       Scene scene = scenes::scene_of(entry.make(17), camera++ % 3, 17);
       scene.integration.tolerance = 1e-5;
