@@ -40,7 +40,13 @@ inline double times(double a, double b) {
 inline Range operator*(Range a, Range b) {
   const double p = times(a.lower, b.lower), q = times(a.lower, b.upper),
                r = times(a.upper, b.lower), s = times(a.upper, b.upper);
-  return {std::min({p, q, r, s}), std::max({p, q, r, s})};
+  // Without lists, which no compiler takes apart at -O1.
+  return {std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s))};
+}
+/// Returns c x of a finite number, of which times() speaks where it is 0.
+inline Range scaled(double c, Range x) {
+  if (c == 0) return {0, 0};
+  return c > 0 ? Range(c * x.lower, c * x.upper) : Range(c * x.upper, c * x.lower);
 }
 /// Returns x^p of x >= 0.
 inline Range power(Range x, double p) {
@@ -68,7 +74,7 @@ inline Jet operator-(const Jet& a, const Jet& b) {
 }
 inline Jet operator*(const Jet& a, const Jet& b) {
   return {a.value * b.value, a.value * b.first + a.first * b.value,
-          a.value * b.second + Range(2) * (a.first * b.first) + a.second * b.value};
+          a.value * b.second + scaled(2, a.first * b.first) + a.second * b.value};
 }
 /// Returns f(x) by the ranges of f, f' and f'' over the value of x.
 inline Jet compose(const Jet& x, Range f, Range df, Range ddf) {
@@ -78,7 +84,7 @@ inline Jet compose(const Jet& x, Range f, Range df, Range ddf) {
 /// Returns x^p of x >= 0; what is below counts as 0.
 inline Jet power(const Jet& x, double p) {
   const Range v{std::max(x.value.lower, 0.0), std::max(x.value.upper, 0.0)};
-  return compose(x, power(v, p), Range(p) * power(v, p - 1), Range(p * (p - 1)) * power(v, p - 2));
+  return compose(x, power(v, p), scaled(p, power(v, p - 1)), scaled(p * (p - 1), power(v, p - 2)));
 }
 inline double power(double x, double p) {
   return std::pow(std::max(x, 0.0), p);
@@ -88,7 +94,7 @@ inline double power(double x, double p) {
 inline Jet logarithm(const Jet& x) {
   const Range v = x.value, inverse{1 / v.upper, 1 / v.lower};
   return compose(x, {std::log(v.lower), std::log(v.upper)}, inverse,
-                 Range(-1) * (inverse * inverse));
+                 scaled(-1, inverse * inverse));
 }
 inline double logarithm(double x) {
   return std::log(x);
@@ -106,7 +112,7 @@ inline Range cosine(Range x) {
 }
 inline Jet cosine(const Jet& x) {
   const Range c = cosine(x.value), s = cosine(x.value - Range(std::numbers::pi / 2));
-  return compose(x, c, Range(-1) * s, Range(-1) * c);
+  return compose(x, c, scaled(-1, s), scaled(-1, c));
 }
 inline double cosine(double x) {
   return std::cos(x);
@@ -145,8 +151,8 @@ T smaller(const T& a, const T& b) {
 
 /// Returns 1/x of x >= 1.
 inline Jet reciprocal(const Jet& x) {
-  return compose(x, power(x.value, -1), Range(-1) * power(x.value, -2),
-                 Range(2) * power(x.value, -3));
+  return compose(x, power(x.value, -1), scaled(-1, power(x.value, -2)),
+                 scaled(2, power(x.value, -3)));
 }
 inline double reciprocal(double x) {
   return 1 / x;

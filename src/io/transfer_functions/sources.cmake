@@ -15,4 +15,7 @@ pellucid_io_sources(
     import_text.cpp
     import_ways.cpp
     import_xml.cpp
-    import_transfer_function.cpp)
+    import_transfer_function.cpp
+  LOOPS
+    import_color_path.cpp
+    import_paths.cpp)

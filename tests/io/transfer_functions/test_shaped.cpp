@@ -118,7 +118,7 @@ TEST(ShapedFunction, OfTooManyBendsIsCoarserAndSaysSo) {
   ShapedFunction function;
   function.is_color = true;
   function.space = 2;
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < 300; ++i) {
     function.nodes.push_back(
         {i * 1.0, i % 2 == 0 ? Rgb<double>{0.9, 0.2, 0.4} : Rgb<double>{0.2, 0.7, 0.9}});
   }
