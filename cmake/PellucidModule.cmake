@@ -34,6 +34,16 @@ target_compile_options(pellucid_build_flags INTERFACE
   $<$<AND:${_pellucid_gcc},$<VERSION_GREATER_EQUAL:${_pellucid_gxx},13>>:-Wno-dangling-reference>
   $<$<BOOL:${PELLUCID_WERROR}>:-Werror>)
 
+# GCC collects its garbage from 128 MB on. Where there is memory, later: a source then takes a tenth
+# less time, and a quarter more memory, 1.4 GB at most.
+cmake_host_system_information(RESULT _pellucid_memory QUERY TOTAL_PHYSICAL_MEMORY)
+cmake_host_system_information(RESULT _pellucid_processors QUERY NUMBER_OF_LOGICAL_CORES)
+math(EXPR _pellucid_memory "${_pellucid_memory} / ${_pellucid_processors}")
+if(_pellucid_memory GREATER 2500)
+  target_compile_options(pellucid_build_flags INTERFACE
+    $<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=1000000>)
+endif()
+
 # OpenVDB includes a part of Boost 1.74 that casts -1 to an enumeration, which is an error there.
 set(pellucid_openvdb_options)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER 16
