@@ -24,6 +24,13 @@ endforeach()
 target_link_libraries(pellucid_test_scenes
   PUBLIC pellucid::scene
   PRIVATE pellucid::io Boost::headers pellucid_build_flags)
+# Those of the gallery have names alike.
+if(PELLUCID_TEST_UNITY)
+  pellucid_unity(pellucid_test_scenes BATCH 5)
+  set(gallery ${scenes_sources})
+  list(FILTER gallery INCLUDE REGEX "/gallery/[^/]*$")
+  set_source_files_properties(${gallery} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endif()
 
 # What renders them to a tolerance and holds them against the reference.
 add_library(pellucid_test_matrix STATIC)
@@ -33,3 +40,6 @@ target_compile_definitions(pellucid_test_matrix PRIVATE PELLUCID_SOURCE_DIR="${P
 target_link_libraries(pellucid_test_matrix
   PUBLIC pellucid_test_scenes pellucid::cpu
   PRIVATE pellucid::reference Threads::Threads pellucid_build_flags)
+if(PELLUCID_TEST_UNITY)
+  pellucid_unity(pellucid_test_matrix BATCH 4)
+endif()
