@@ -91,9 +91,11 @@ class SecondLook {
   /// Returns the transparency of all that is in front of this rank's part.
   std::vector<double> transparency_in_front() {
     std::vector<RayPixel> pixels;
+    pixels.reserve(rays_.size());
     for (const std::size_t ray : rays_) pixels.push_back(parts_.own[ray]);
     ranks_.composite_in_front(pixels, parts_.place);
     std::vector<double> transparency;
+    transparency.reserve(pixels.size());
     for (const RayPixel& pixel : pixels) {
       transparency.push_back(std::clamp(1 - double{pixel.opacity}, 0.0, 1.0));
     }
@@ -148,6 +150,7 @@ class SecondLook {
 
   void composite() {
     std::vector<RayPixel> pixels;
+    pixels.reserve(rays_.size());
     for (const std::size_t ray : rays_) pixels.push_back(parts_.own[ray]);
     ranks_.composite(pixels, parts_.place);
     if (ranks_.rank() != 0) return;

@@ -33,6 +33,7 @@ ReferencePixel integrate(const std::vector<std::unique_ptr<const LayerData>>& la
                          const RealRay& ray, bool with_depth, std::uint64_t& cells, Real last) {
   Real overlap = 0;
   std::vector<std::vector<LayerStretch>> lists;
+  lists.reserve(layers.size());
   for (const auto& layer : layers) lists.push_back(layer->stretches(ray, cells, overlap));
   std::vector<Real> ends = ends_of(lists);
   if (!ends.empty() && last < ends.back()) {

@@ -297,8 +297,8 @@ class GridProjector : public LayerProjector {
   /// Lists the blocks that the parts of a ray cross, and their bounds. Returns their number.
   std::size_t list_blocks(const GridRay& ray, const std::vector<Interval<double>>& parts,
                           GridWorkspace& workspace) const {
-    const auto most = static_cast<std::size_t>(block_planes_.cells(0) + block_planes_.cells(1) +
-                                               block_planes_.cells(2) + 3);
+    const int faces = block_planes_.cells(0) + block_planes_.cells(1) + block_planes_.cells(2) + 3;
+    const auto most = static_cast<std::size_t>(faces);
     if (workspace.blocks.size() < most * parts.size()) {
       workspace.blocks.resize(most * parts.size());
       workspace.bounds.resize(most * parts.size());

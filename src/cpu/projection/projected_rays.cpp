@@ -103,7 +103,7 @@ ProjectedRays project_layer(const Scene& scene, std::size_t index, const RenderO
   if (projection == LayerProjection::mean) layer.projection = LayerProjection::sum;
   std::vector<Clip> clips = clips_of(layer, scene.clips);
   if (options.outputs.region) {
-    for (Clip& clip : clips_of_region(*options.outputs.region)) clips.push_back(std::move(clip));
+    for (const Clip& clip : clips_of_region(*options.outputs.region)) clips.push_back(clip);
   }
   const int threads =
       options.machine.threads > 0 ? options.machine.threads : default_thread_count();

@@ -158,6 +158,7 @@ std::vector<Part> parts_by_mark(const Series& series, const Part& whole, std::si
   std::map<std::string, Indices, MarkOrder> values;
   for (const std::size_t i : whole.slices) values[series.slice(i).marks[mark]].push_back(i);
   std::vector<Part> parts;
+  parts.reserve(values.size());
   for (auto& [value, slices] : values) {
     parts.push_back({std::move(slices),
                      joined(whole.mark, std::string(dicom_marks[mark].name) + " " +

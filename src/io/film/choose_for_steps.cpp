@@ -95,7 +95,9 @@ class PooledVolume {
 
   template <class Value>
   void append(const Volume& volume, std::vector<Value>& pooled) {
-    const auto [nx, ny, nz] = volume.description().dimensions;
+    // Names of a binding are nothing that a lambda takes along.
+    const auto& points = volume.description().dimensions;
+    const int nx = points[0], ny = points[1], nz = points[2];
     if (nx != description_.dimensions[0] || ny != description_.dimensions[1]) return;
     std::visit(
         [&](const auto& values) {

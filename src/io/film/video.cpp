@@ -69,6 +69,7 @@ Outcome run_ffmpeg(std::vector<std::string> arguments, const std::filesystem::pa
                    const std::function<bool()>& ended = {}) {
   arguments.insert(arguments.begin(), {"ffmpeg", "-nostdin", "-hide_banner", "-v", "error"});
   std::vector<char*> words;
+  words.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) words.push_back(argument.data());
   words.push_back(nullptr);
 

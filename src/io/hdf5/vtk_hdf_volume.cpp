@@ -148,10 +148,9 @@ Volume::Description describe(const Image& image, const Named& named, const std::
   GridPlacement& placement = description.placement;
   const bool cell = description.centering == Centering::cell;
   if (c.direction.size() == 9) {
-    for (int a = 0; a < 3; ++a) {
-      for (int row = 0; row < 3; ++row) {
-        placement.direction.column[a][row] = c.direction[static_cast<std::size_t>(3 * row + a)];
-      }
+    std::size_t n = 0;
+    for (int row = 0; row < 3; ++row) {
+      for (int a = 0; a < 3; ++a) placement.direction.column[a][row] = c.direction[n++];
     }
   }
   for (int a = 0; a < 3; ++a) {
@@ -161,7 +160,7 @@ Volume::Description describe(const Image& image, const Named& named, const std::
     description.dimensions[axis] = image.points[axis] - (cell ? 1 : 0);
   }
   for (int a = 0; a < 3; ++a) {
-    const double first = c.extent[static_cast<std::size_t>(2 * a)] + (cell ? 0.5 : 0);
+    const double first = c.extent[2 * static_cast<std::size_t>(a)] + (cell ? 0.5 : 0);
     placement.origin =
         placement.origin + placement.direction.column[a] * (placement.spacing[a] * first);
     if (placement.spacing[a] < 0) {

@@ -253,6 +253,7 @@ void check_draws_color_bars() {
 
 Image with_color_bars(const Image& image, const std::vector<ColorBar>& bars) {
   std::vector<LegendPanel> panels;
+  panels.reserve(bars.size());
   for (const ColorBar& bar : bars) panels.push_back(panel_of(bar));
   std::vector<std::uint32_t> argb;
   std::string error;

@@ -42,6 +42,7 @@ void put_numbers(ZipWriter& archive, const std::string& name, const std::vector<
 /// "affine" of an array with these axes.
 std::vector<double> affine_of(const GridPlacement& placement) {
   std::vector<double> matrix;
+  matrix.reserve(16);
   const Vec3<double> spacing = placement.spacing;
   const auto& direction = placement.direction.column;
   const std::array<Vec3<double>, 4> columns{spacing.x * direction[0], spacing.y * direction[1],

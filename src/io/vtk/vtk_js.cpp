@@ -173,10 +173,10 @@ void read_placement(const Node& root, Image& image) {
   if (const auto direction = root.find("direction"); direction && !direction->is_null()) {
     // As gl-matrix has it: axis by axis.
     if (direction->array_size() != 9) direction->fail("must have 9 numbers");
+    std::size_t n = 0;
     for (int a = 0; a < 3; ++a) {
       for (int i = 0; i < 3; ++i) {
-        placement.direction.column[a][i] =
-            direction->element(static_cast<std::size_t>(3 * a + i)).number();
+        placement.direction.column[a][i] = direction->element(n++).number();
       }
     }
   }

@@ -74,7 +74,7 @@ MixturePart::MixturePart(const Mixture& mixture, const std::vector<Chord>& chord
 
 void MixturePart::add(MixturePart other) {
   for (GaussianTerm& term : other.gaussians_) gaussians_.push_back(std::move(term));
-  for (TablePart& part : other.tables_) tables_.push_back(std::move(part));
+  tables_.insert(tables_.end(), other.tables_.begin(), other.tables_.end());
 }
 
 void MixturePart::add(GaussianTerm term) {

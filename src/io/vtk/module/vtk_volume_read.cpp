@@ -328,6 +328,7 @@ std::string value_type(const Entry& entry) {
 
 std::vector<VtkArrayName> names_of(const std::vector<Entry>& entries, bool with_ghosts) {
   std::vector<VtkArrayName> names;
+  names.reserve(entries.size() + 2);
   for (const Entry& entry : entries) names.push_back({entry.centering, entry.in_file});
   if (with_ghosts) {
     names.push_back({Centering::point, ghost_name()});

@@ -125,6 +125,7 @@ std::vector<SameArrays> same_arrays(const VtkXmlPiece& piece, const IsVtkArrayWa
     groups[{array.section, has_name ? array.name : ""}].push_back(&array);
   }
   std::vector<SameArrays> list;
+  list.reserve(groups.size());
   for (auto& [name, group] : groups) list.push_back(std::move(group));
   return list;
 }
