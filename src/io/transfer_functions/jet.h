@@ -93,8 +93,7 @@ inline double power(double x, double p) {
 /// Returns ln x of x > 0.
 inline Jet logarithm(const Jet& x) {
   const Range v = x.value, inverse{1 / v.upper, 1 / v.lower};
-  return compose(x, {std::log(v.lower), std::log(v.upper)}, inverse,
-                 scaled(-1, inverse * inverse));
+  return compose(x, {std::log(v.lower), std::log(v.upper)}, inverse, scaled(-1, inverse * inverse));
 }
 inline double logarithm(double x) {
   return std::log(x);
