@@ -138,7 +138,7 @@ def test_a_thread_of_python_counts_while_a_frame_renders():
 
 def test_progress_rises_to_one():
     seen = []
-    pellucid.render(pellucid.builtin_field("shells", 64), size=700, tolerance=1e-6,
+    pellucid.render(pellucid.builtin_field("shells", 64), size=200, tolerance=1e-6,
                     progress=seen.append)
     assert seen == sorted(seen) and seen[-1] == 1 and len(seen) > 1
 
@@ -212,7 +212,7 @@ def test_frames_do_not_grow_memory():
     def frames(count):
         for i in range(count):
             values = smooth(shape=(20, 20, 20)) + numpy.float32(i % 7)
-            scene = pellucid.scene_of(values, size=16)
+            scene = pellucid.scene_of(values, size=8)
             renderer.render(scene).to_srgb8()
         gc.collect()
         with open("/proc/self/statm", encoding="ascii") as file:
