@@ -152,6 +152,11 @@ class StageTest(ProgramTest):
                 for name in ("Exact", "LargestError", "PixelsOver")]
 
 
+def move(display, position):
+    """Moves what is shown: by a property that ParaView 5.13 has renamed."""
+    setattr(display, "Translation" if hasattr(display, "Translation") else "Position", position)
+
+
 def plane(view, center, across, up, color):
     """Shows a rectangle of one color, without light."""
     source = simple.Plane(Origin=list(numpy.subtract(center, numpy.add(across, up) / 2)),

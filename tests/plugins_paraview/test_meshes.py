@@ -9,7 +9,7 @@ import numpy
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from stage import (BLENDED, COLORS, OF_WINDOW, OPACITIES, OURS, TOLERANCE, UNIT, StageTest,
-                   extinctions_of, plane, simple, unit)
+                   extinctions_of, move, plane, simple, unit)
 from vtkmodules.util import numpy_support
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import (VTK_HEXAHEDRON, VTK_TETRA, VTK_WEDGE,
@@ -104,7 +104,7 @@ class Meshes(StageTest):
 
     def test_moved(self):
         display = self.show(self.opened(self.bent()), "f")
-        display.Position = [2, -1, 3]
+        move(display, [2, -1, 3])
         self.assert_same([{**self.bent_layer(),
                            "transform": [[1, 0, 0, 2], [0, 1, 0, -1], [0, 0, 1, 3]]}])
 
@@ -135,7 +135,8 @@ class Meshes(StageTest):
     def test_turned_about_a_place_far_off(self):
         """The camera's range is that of the data where they are shown."""
         display = self.show(self.opened(self.bent()), "f")
-        display.Orientation, display.Position = [0, 0, 180], [20, 30, 0]
+        display.Orientation = [0, 0, 180]
+        move(display, [20, 30, 0])
         self.view.CameraFocalPoint = [20, 30, 0]
         self.assert_same([{**self.bent_layer(),
                            "transform": [[-1, 0, 0, 20], [0, -1, 0, 30], [0, 0, 1, 0]]}])

@@ -10,7 +10,7 @@ import numpy
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import test_meshes
 from stage import (BLENDED, COLORS, OF_WINDOW, OPACITIES, TOLERANCE, UNIT, StageTest,
-                   servermanager, simple, table_of)
+                   move, servermanager, simple, table_of)
 from vtkmodules.util import numpy_support
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet, vtkRectilinearGrid
 from vtkmodules.vtkIOXML import (vtkXMLImageDataWriter, vtkXMLMultiBlockDataWriter,
@@ -117,7 +117,7 @@ class Ranks(StageTest):
     def test_moved(self):
         source, field = self.image()
         display = self.show(source, "f")
-        display.Position = [2, -1, 3]
+        move(display, [2, -1, 3])
         display.Orientation = [0, 0, 90]
         self.assert_whole([self.layer(
             field, transform=[[0, -1, 0, 2], [1, 0, 0, -1], [0, 0, 1, 3]])])

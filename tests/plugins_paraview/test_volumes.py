@@ -8,8 +8,8 @@ import unittest
 import numpy
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from stage import (BLENDED, COLORS, OF_WINDOW, OPACITIES, OURS, TOLERANCE, UNIT, StageTest, plane,
-                   simple, table_of, unit)
+from stage import (BLENDED, COLORS, OF_WINDOW, OPACITIES, OURS, TOLERANCE, UNIT, StageTest, move,
+                   plane, simple, table_of, unit)
 from vtkmodules.util import numpy_support
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkRectilinearGrid
 from vtkmodules.vtkRenderingCore import vtkColorTransferFunction
@@ -64,7 +64,7 @@ class Volumes(StageTest):
 
     def test_moved(self):
         source, display = self.wavelet()
-        display.Position = [2, -1, 3]
+        move(display, [2, -1, 3])
         display.Orientation = [0, 0, 90]
         self.assert_same([self.layer(
             source, transform=[[0, -1, 0, 2], [1, 0, 0, -1], [0, 0, 1, 3]])])
