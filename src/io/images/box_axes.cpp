@@ -99,7 +99,7 @@ class SeenBox {
 };
 
 /// Returns the title of an axis, with its ends in the order in which they are read.
-std::string title_of(int axis, const PageAxis& seen, const FigureSpace& space) {
+std::string title_of(int axis, const DrawnAxis& seen, const FigureSpace& space) {
   auto ends = axis_ends(axis, space.is_anatomical);
   const bool is_forward = seen.is_steep() ? seen.from.y > seen.to.y : seen.from.x < seen.to.x;
   if (!is_forward && !ends[0].empty()) std::swap(ends[0], ends[1]);
@@ -175,7 +175,7 @@ BoxAxes box_axes(const FigureSpace& space, ImageSize size, double points_per_pix
     const double long_as = points_per_pixel * std::hypot(chosen->end.x - chosen->start.x,
                                                          chosen->end.y - chosen->start.y);
     if (long_as >= shortest_axis) {
-      PageAxis axis{"", chosen->start, chosen->end, chosen->outward, {}};
+      DrawnAxis axis{"", chosen->start, chosen->end, chosen->outward, {}};
       axis.title = title_of(a, axis, space);
       const int most = std::max(2, static_cast<int>(long_as / between_ticks));
       for (const Tick& tick : round_ticks(space.lower[a], space.upper[a], most)) {

@@ -12,7 +12,7 @@ namespace pellucid {
 
 /// Axes along edges of a box as seen, and its other edges that border on the background.
 struct BoxAxes {
-  std::vector<PageAxis> axes;
+  std::vector<DrawnAxis> axes;
   std::vector<std::array<PagePoint, 2>> outline;
 };
 

@@ -37,7 +37,7 @@ struct PagePoint {
 };
 
 /// Axis of a box, as seen.
-struct PageAxis {
+struct DrawnAxis {
   /// Returns whether an axis is steep; its title then runs upwards.
   bool is_steep() const { return outward.x > 0.85 || outward.x < -0.85; }
 
@@ -70,7 +70,7 @@ struct FigurePage {
   std::vector<std::uint8_t> covered;  ///< a byte a pixel: whether data are seen; may be empty
   std::vector<std::uint8_t> behind;   ///< sRGB of the background, three bytes a row
   std::vector<LegendPanel> panels;
-  std::vector<PageAxis> axes;
+  std::vector<DrawnAxis> axes;
   std::vector<std::array<PagePoint, 2>> outline;  ///< further edges of the axes' box
   bool grows = false;    ///< true if the background may be continued for the axes
   double scale_bar = 0;  ///< length in pixels; 0: none

@@ -114,7 +114,7 @@ void set_axes(const Figure& figure, ImageSize size, FigurePage& page) {
   const auto reaches_beyond = [&](const auto& line) {
     return !is_inside(line[0], size, beyond) || !is_inside(line[1], size, beyond);
   };
-  if (std::ranges::any_of(seen.axes, [&](const PageAxis& axis) {
+  if (std::ranges::any_of(seen.axes, [&](const DrawnAxis& axis) {
         return reaches_beyond(std::array{axis.from, axis.to});
       })) {
     return;

@@ -404,9 +404,9 @@ class Composer {
       if (is_free) texts.push_back(std::move(text));
     };
     std::vector<PlacedText> titles;
-    for (const PageAxis& axis : page_.axes) {
+    for (const DrawnAxis& axis : page_.axes) {
       double reach = 0;
-      for (const PageAxis::Tick& each : axis.ticks) {
+      for (const DrawnAxis::Tick& each : axis.ticks) {
         const PageBox box =
             beside(each.label, scale * each.at.x, scale * each.at.y, axis.outward, tick + tick_gap);
         add({each.label, box});
@@ -432,7 +432,7 @@ class Composer {
     const auto include = [&](const PagePoint& point) {
       stage.include(PageBox{scale * point.x, scale * point.y, 0, 0}.grown(2));
     };
-    for (const PageAxis& axis : page_.axes) {
+    for (const DrawnAxis& axis : page_.axes) {
       include(axis.from);
       include(axis.to);
     }
@@ -455,7 +455,7 @@ class Composer {
       pen_.stroke(x_of(edge[0]), y_of(edge[0]), x_of(edge[1]), y_of(edge[1]), thin, grey);
     }
     cairo_set_line_cap(pen_.get(), CAIRO_LINE_CAP_ROUND);
-    for (const PageAxis& axis : page_.axes) {
+    for (const DrawnAxis& axis : page_.axes) {
       // The color that suits the outer side, where the background is.
       const PagePoint outside{axis.outward.x * 4 / layout.scale, axis.outward.y * 4 / layout.scale};
       const PagePoint half{(axis.from.x + axis.to.x) / 2 + outside.x,
@@ -468,7 +468,7 @@ class Composer {
         taken.push_back({(1 - share) * x_of(axis.from) + share * x_of(axis.to),
                          (1 - share) * y_of(axis.from) + share * y_of(axis.to), 1, 1});
       }
-      for (const PageAxis::Tick& each : axis.ticks) {
+      for (const DrawnAxis::Tick& each : axis.ticks) {
         pen_.stroke(x_of(each.at), y_of(each.at), x_of(each.at) + tick * axis.outward.x,
                     y_of(each.at) + tick * axis.outward.y, line, color);
       }
