@@ -21,14 +21,19 @@ TOP = ("apps", "include", "plugins", "python", "src")
 SUFFIXES = (".h", ".cpp", ".cu")
 OPENED = re.compile(r"(?:inline )?namespace(?: ([\w:]+))? \{\s*(\}.*)?$")
 CLOSED = re.compile(r"\}\s*// namespace")
-DEFINED = re.compile(r"(?:template <.*> )?(?:struct|class|union|enum class|enum) (?:\[\[\w+\]\] )?"
+DEFINED = re.compile(r"(?:template ?<.*> )?(?:struct|class|union|enum class|enum) "
+                     r"(?:\[\[.*?\]\] |alignas\([^)]*\) )*"
                      r"(\w+(?:<[^{]*>)?)(?: final)?(?:\s*:(?!:)[^;]*)?\s*\{")
+KERNELS = re.compile(r"^#if PELLUCID_HAS_BATCH_.*?(?=^#endif|\Z)", re.MULTILINE | re.DOTALL)
+# Heads of types that are laid out over several lines.
+BROKEN = re.compile(r"^((?:struct|class|union|enum)\b[^;{()]*?)\n\s*(?=[:{,\w])", re.MULTILINE)
 
 
 def types(text):
     """Yields the types that a file defines, with their namespaces."""
-    if "#if PELLUCID_HAS_BATCH_" in text:
-        return
+    text = KERNELS.sub("", text)
+    while BROKEN.search(text):
+        text = BROKEN.sub(r"\1 ", text)
     namespaces = []
     for line in text.splitlines():
         opened = OPENED.match(line)
