@@ -5,10 +5,9 @@
 # ends at the first that is not there, for everybody. The plug-in links none of them. CMake from
 # 3.28 on, which Debian 13 has, does not ask for the files of a target that has a framework of
 # Apple's in their place, and of that only whether it is a folder.
-if(ParaView_DIR)
-  set(folders "${ParaView_DIR}")
-else()
-  file(GLOB folders "/usr/lib/*/cmake/paraview-*")
+file(GLOB folders "/usr/lib/*/cmake/paraview-*")
+if(IS_DIRECTORY "${ParaView_DIR}")
+  list(APPEND folders "${ParaView_DIR}")
 endif()
 foreach(folder IN LISTS folders)
   file(GLOB lists "${folder}/*Python*-targets-*.cmake" "${folder}/vtk/*Python*-targets-*.cmake")
