@@ -138,8 +138,9 @@ class Animate(ProgramTest):
         arguments = ["animate", "builtin:shells:16", "--size", "16", "--frames", "5", "-q", "-o"]
         self.succeed(*arguments, "whole/%d.png")
         # What Open MPI itself does not free is no fault of ours, where a sanitizer looks.
+        sanitizer = os.environ.get("ASAN_OPTIONS", "") + ":detect_leaks=0"
         environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1",
-                       "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "ASAN_OPTIONS": "detect_leaks=0"}
+                       "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "ASAN_OPTIONS": sanitizer}
         run = ["mpirun", "--oversubscribe", "-n", "3", PROGRAM]
         subprocess.run([*run, *arguments, "f/%d.png", "--ranks", "--threads", "1"],
                        cwd=self.path(""), env=environment, check=True, capture_output=True,
