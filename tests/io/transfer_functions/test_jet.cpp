@@ -71,6 +71,17 @@ TEST(Jet, BoundsChordsOverKinks) {
   check("signal", 1e-4, 1, [](const auto& x) { return signal_of(x); });
 }
 
+TEST(Jet, RangesThatAreScaledKeepTheirOrder) {
+  const Range turned = scaled(-2, Range(-1, 3)), stretched = scaled(2, Range(-1, 3));
+  EXPECT_EQ(turned.lower, -6);
+  EXPECT_EQ(turned.upper, 2);
+  EXPECT_EQ(stretched.lower, -2);
+  EXPECT_EQ(stretched.upper, 6);
+  const Range unknown = scaled(0, Range::all());
+  EXPECT_EQ(unknown.lower, 0);
+  EXPECT_EQ(unknown.upper, 0);
+}
+
 TEST(Jet, OfWhatIsUnknownIsNotSmall) {
   const Jet unknown({0, 1}, Range::all(), Range::all());
   EXPECT_TRUE(std::isinf(chord_deviation(unknown, 1)));
