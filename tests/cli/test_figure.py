@@ -10,11 +10,10 @@ import xml.etree.ElementTree
 import zlib
 
 from program import HAZE, OVERLAPPING, ProgramTest, npy, pixel, png, ramp
-from svg import is_glyph, properties
+from svg import SVG, XLINK, is_glyph, lines, points, properties
 
 HAS_CAIRO = os.environ.get("PELLUCID_HAS_CAIRO") == "1"
 WIDTH = 85 * 72 / 25.4
-XLINK = "{http://www.w3.org/1999/xlink}href"
 # Opaque within a voxel, with colors that no others are like.
 OPAQUE = {"points": [{"value": 0, "extinction": 50, "color": [1, 0, 0]},
                      {"value": 60, "extinction": 80, "color": [0.1, 0.8, 0.2]},
@@ -50,7 +49,7 @@ class Svg:
         self.size = tuple(float(root.get(name).removesuffix("pt")) for name in ("width", "height"))
         elements = {e.get("id"): e for e in root.iter() if e.get("id")}
         self.images, self.lines, self.glyphs = [], [], []
-        for use in root.iter("{http://www.w3.org/2000/svg}use"):
+        for use in root.iter(SVG + "use"):
             target = elements[use.get(XLINK)[1:]]
             matrix = re.fullmatch(r"matrix\((.*)\)", use.get("transform") or "")
             if target.tag.endswith("image") and matrix:
@@ -58,23 +57,15 @@ class Svg:
                 width, height = (int(target.get(name)) for name in ("width", "height"))
                 self.images.append((width, height, left, top, left + across * width,
                                     top + down * height))
-        for use in root.iter("{http://www.w3.org/2000/svg}use"):
+        for use in root.iter(SVG + "use"):
             target = elements[use.get(XLINK)[1:]]
             if is_glyph(target):
                 path = "".join(part.get("d") or "" for part in target)
-                heights = [y for _, y in self.points(path)] or [0]
+                heights = [y for _, y in points(path)] or [0]
                 self.glyphs.append((float(use.get("x")), float(use.get("y")),
                                     max(heights) - min(heights)))
-        for path in root.iter("{http://www.w3.org/2000/svg}path"):
-            drawn = properties(path)
-            points = self.points(path.get("d"))
-            if "stroke-width" in drawn and drawn.get("fill") == "none" and len(points) == 2:
-                self.lines.append((float(drawn["stroke-width"]), *points[0], *points[1]))
-
-    @staticmethod
-    def points(path):
-        numbers = [float(n) for n in re.findall(r"-?[0-9.]+", path)]
-        return list(zip(numbers[::2], numbers[1::2]))
+        for drawn, ends in lines(root):
+            self.lines.append((float(drawn["stroke-width"]), *ends[0], *ends[1]))
 
     def bar(self):
         """The box of the strip of colors: left, top, right, bottom."""

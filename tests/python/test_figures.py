@@ -16,12 +16,11 @@ import pellucid.mpl
 from conftest import smooth
 
 sys.path.insert(0, os.path.join(os.environ["PELLUCID_SOURCE_DIR"], "tests", "cli"))
-from svg import properties  # noqa: E402
+from svg import SVG, XLINK, lines  # noqa: E402
 
 needs_cairo = pytest.mark.skipif(os.environ.get("PELLUCID_HAS_CAIRO") != "1",
                                  reason="built without Cairo")
 HAZE = [(0, 0.05, (1, 0, 0)), (60, 0.1, (0.1, 0.8, 0.2)), (100, 0.15, (0, 0, 1))]
-SVG = "{http://www.w3.org/2000/svg}"
 CAMERAS = {
     "perspective": pellucid.Camera(position=(40, -60, 45), focal_point=(9, 3, 3), up=(0, 0, 1),
                                    vertical_angle=35),
@@ -71,19 +70,14 @@ class Drawn:
         self.text = figure.encode("svg").decode()
         root = xml.etree.ElementTree.fromstring(self.text)
         by_id = {e.get("id"): e for e in root.iter() if e.get("id")}
-        link = "{http://www.w3.org/1999/xlink}href"
         for use in root.iter(SVG + "use"):
-            target = by_id[use.get(link)[1:]]
+            target = by_id[use.get(XLINK)[1:]]
             if target.tag == SVG + "image" and target.get("width") == str(size[0]):
                 matrix = re.findall(r"-?[0-9.]+", use.get("transform"))
                 self.scale, self.left, self.top = (float(matrix[i]) for i in (0, 4, 5))
         self.axes, self.ticks, self.scale_bars = [], [], []
-        for path in root.iter(SVG + "path"):
-            drawn = properties(path)
-            numbers = [float(n) for n in re.findall(r"-?[0-9.]+", path.get("d"))]
-            if len(numbers) != 4 or drawn.get("fill") != "none":
-                continue
-            line = (numpy.array(numbers).reshape(2, 2) - (self.left, self.top)) / self.scale
+        for drawn, ends in lines(root):
+            line = (numpy.array(ends) - (self.left, self.top)) / self.scale
             if drawn["stroke-width"] == "1.4":
                 self.scale_bars.append(line)
             if (drawn["stroke-width"], drawn["stroke-linecap"]) != ("0.6", "round"):
