@@ -6,8 +6,9 @@
 
 The linker takes one copy of an inline member or of std::vector<T>'s, whichever T it was compiled
 for, so that two types of one name read and write each other's memory. No compiler says so. Sources
-of kernels have a namespace per instruction set (PELLUCID_HAS_BATCH_…), and are left out, as are the
-headers native_….h, of which a processor has one; so is what stands in an anonymous namespace.
+of kernels have a namespace per instruction set (PELLUCID_HAS_BATCH_4 and others), and are left out,
+as are the headers native_….h, of which a processor has one; so is what stands in an anonymous
+namespace.
 """
 import collections
 import pathlib
