@@ -88,11 +88,16 @@ class SecondLook {
   }
   double error_of(std::size_t ray) const { return double{parts_.own[ray].error}; }
 
-  /// Returns the transparency of all that is in front of this rank's part.
-  std::vector<double> transparency_in_front() {
+  std::vector<RayPixel> own_pixels() const {
     std::vector<RayPixel> pixels;
     pixels.reserve(rays_.size());
     for (const std::size_t ray : rays_) pixels.push_back(parts_.own[ray]);
+    return pixels;
+  }
+
+  /// Returns the transparency of all that is in front of this rank's part.
+  std::vector<double> transparency_in_front() {
+    std::vector<RayPixel> pixels = own_pixels();
     ranks_.composite_in_front(pixels, parts_.place);
     std::vector<double> transparency;
     transparency.reserve(pixels.size());
@@ -149,9 +154,7 @@ class SecondLook {
   }
 
   void composite() {
-    std::vector<RayPixel> pixels;
-    pixels.reserve(rays_.size());
-    for (const std::size_t ray : rays_) pixels.push_back(parts_.own[ray]);
+    std::vector<RayPixel> pixels = own_pixels();
     ranks_.composite(pixels, parts_.place);
     if (ranks_.rank() != 0) return;
     for (std::size_t i = 0; i < rays_.size(); ++i) parts_.composite[rays_[i]] = pixels[i];
