@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Says which checks of .ci/checks are due, and notes those that passed.
 
-  due_checks.py due [NAME]      prints the checks whose files differ from those that passed; with a
-                                name, ends with 0 if that one is due and with 1 if it is not
+  due_checks.py due [NAME...]   prints the checks whose files differ from those that passed; with
+                                names, ends with 0 if one of these is due and with 1 if none is
   due_checks.py left-out        prints a regular expression of ctest names that are not due
   due_checks.py due-tests       prints one of those that are
-  due_checks.py passed NAME     notes in .ci/passed that this one passed for the files as they are
+  due_checks.py passed NAME...  notes in .ci/passed that these passed for the files as they are
   due_checks.py note RESULTS TESTS
                                 the same for every check whose tests all ran and passed, by the file
                                 that ctest --output-junit wrote, and of all tests, what
@@ -166,28 +166,29 @@ def run(arguments):
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--root", type=Path, default=REPOSITORY)
     parser.add_argument("command", choices=["due", "left-out", "due-tests", "passed", "note"])
-    parser.add_argument("name", nargs="?")
-    parser.add_argument("all_tests", nargs="?")
+    parser.add_argument("names", nargs="*")
     arguments = parser.parse_args(arguments)
-    root, name = arguments.root, arguments.name
+    root, names = arguments.root, arguments.names
     if arguments.command == "note":
-        if arguments.all_tests is None:
+        if len(names) != 2:
             raise ValueError("note takes two files: results, and what there is to test")
-        noted = note_passed(root, passed_in(list(results_of(name)), names_of(arguments.all_tests)))
+        noted = note_passed(root, passed_in(list(results_of(names[0])), names_of(names[1])))
         print(f"{len(noted)} noted in .ci/passed: {' '.join(noted)}")
         return 0
-    if name and name not in {check.name for check in read_checks(root)}:
-        raise ValueError(f"{name}: not in .ci/checks")
+    known = {check.name for check in read_checks(root)}
+    for name in names:
+        if name not in known:
+            raise ValueError(f"{name}: not in .ci/checks")
     if arguments.command == "passed":
-        note_passed(root, lambda check: check.name == name)
+        note_passed(root, lambda check: check.name in names)
         return 0
     late, rest = due(root)
     if arguments.command in ("left-out", "due-tests"):
         # Without parentheses: CMake takes nine of them.
         print("|".join(check.tests for check in (late if arguments.command == "due-tests" else rest)
                        if check.tests))
-    elif name:
-        return 0 if name in {check.name for check in late} else 1
+    elif names:
+        return 0 if any(check.name in names for check in late) else 1
     else:
         print("\n".join(check.name for check in late))
     return 0

@@ -108,6 +108,10 @@ class DueChecks(unittest.TestCase):
         self.assertEqual(self.status("passed", "script"), 0)
         self.assertEqual(self.status("due", "script"), 1)
         self.assertEqual(self.due(), ALL - {"page.no", "script"})
+        self.assertEqual(self.status("due", "script", "one"), 0)
+        self.assertEqual(self.status("passed", "script", "one"), 0)
+        self.assertEqual(self.status("due", "script", "one"), 1)
+        self.assertEqual(self.status("due", "script", "scrypt"), 2)
         for command in ("due", "passed"):
             self.assertEqual(self.status(command, "scrypt"), 2)
 
